@@ -40,7 +40,7 @@ static weft_code look(weft_dataset *dataset, const weft_compress_options *option
 static weft_compress_options options_of(kind own, int lobes, int budget)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.levels = false;
     options.lobe_count = lobes;
     options.table = own != PLAIN;

@@ -1,14 +1,14 @@
 /* Whether the certificate of a material covers what it says, on directions that neither the fit nor the certificate
- * has seen: `bench_certificate NAME.btf.h5 lobes|layers [SIDE]`, of at most SIDE x SIDE texels of the middle (32). A
- * further split of the dataset is left out of both; of fewer than 24 images each in turn. Layers are seen through the
- * heights of the dataset where weft compress keeps them. A level of the material is asked for the means of photographs
- * over its texels; through heights means of level 0 are. Prints one row of comma-separated values a level: at its end
- * the quantile of the certificate and the one that was needed. */
+ * has seen: `bench_certificate NAME.btf.h5 lobes|components [SIDE]`, of at most SIDE x SIDE texels of the middle (32).
+ * A further split of the dataset is left out of both; of fewer than 24 images each in turn. Components are seen through
+ * the heights of the dataset where weft compress keeps them. A level of the material is asked for the means of
+ * photographs over its texels; through heights means of level 0 are. Prints one row of comma-separated values a level:
+ * at its end the quantile of the certificate and the one that was needed. */
 #include "base/half.h"
 #include "base/numeric/statistics.h"
-#include "study/error/coverage.h"
-#include "study/hold_out/hold_out.h"
-#include "study/hold_out/residuals.h"
+#include "compress/hold_out/hold_out.h"
+#include "compress/hold_out/residuals.h"
+#include "evaluate/error/coverage.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -238,16 +238,16 @@ static weft_code test(testing *t, weft_error *error)
 
 int main(int argc, char **argv)
 {
-    bool has_model = argc == 3 || argc == 4, is_layers = has_model && strcmp(argv[2], "layers") == 0;
+    bool has_model = argc == 3 || argc == 4, is_components = has_model && strcmp(argv[2], "components") == 0;
     int side = argc == 4 ? atoi(argv[3]) : SIDE;
-    if (!has_model || side < 1 || (!is_layers && strcmp(argv[2], "lobes") != 0)) {
-        fprintf(stderr, "usage: bench_certificate NAME.btf.h5 lobes|layers [SIDE]\n");
+    if (!has_model || side < 1 || (!is_components && strcmp(argv[2], "lobes") != 0)) {
+        fprintf(stderr, "usage: bench_certificate NAME.btf.h5 lobes|components [SIDE]\n");
         return 2;
     }
     testing t = {.name = argv[1], .model = argv[2], .side = side, .options = weft_compress_default_options()};
     weft_error error = {0};
-    t.options.layer_count = is_layers ? 16 : 0;
-    if (is_layers) {
+    t.options.component_count = is_components ? 16 : 0;
+    if (is_components) {
         t.options.lobe_count = 0;
         t.options.table = false;
     }

@@ -51,7 +51,7 @@ static weft_code compress(const job *given, weft_compress_report *report, weft_e
     weft_dataset *dataset;
     weft_material material = {0};
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.lobe_count = given->lobe_count;
     WEFT_TRY(weft_dataset_open(given->dataset, &dataset, error));
     weft_code code = weft_compress(dataset, &options, NULL, &material, report, error);

@@ -3,11 +3,11 @@
  * light and view by itself; and what the player makes of a dataset with more samples a pixel or on the finest level
  * alone. Usage: bench_drape_bound STITCH DATASET.btf.h5 PICTURES/ [PATHS [SIDE]] */
 #include "bench/faultless_btf.h"
+#include "compare/truth/comparison.h"
+#include "compare/truth/trace.h"
 #include "geometry/drape/draped_cloth.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"
-#include "study/truth/comparison.h"
-#include "study/truth/trace.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -163,7 +163,7 @@ static void open_cloth(const char *stitch, const char *dataset, cloth *c)
     stop_on(weft_draped_cloth_create(&c->stitch, &c->tile, &c->base.surface, &c->draped, &error), &error);
 }
 
-/* As study/truth/comparison.c does: texels are taken for square. */
+/* As compare/truth/comparison.c does: texels are taken for square. */
 static void set_drape(stage *s, cloth *c)
 {
     weft_error error = {0};

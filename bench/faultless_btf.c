@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { MOST_LAYERS = 8 };
+enum { MOST_COMPONENTS = 8 };
 
 typedef struct btf {
     const weft_stitch_sample *sample;
@@ -95,7 +95,7 @@ static bool is_lit(const btf *b, const meeting *m, uint64_t key, uint32_t index)
 {
     meeting next = *m;
     weft_vec3 from = weft_add(m->at, weft_scale(m->axis[2], 0.004));
-    for (int i = 0; i < MOST_LAYERS; i++) {
+    for (int i = 0; i < MOST_COMPONENTS; i++) {
         weft_seen_vertex vertex[1 + WEFT_STITCH_SAMPLE_MAX_BOUNCES];
         if (!meet(b, from, b->light, &next))
             return true;
@@ -111,7 +111,7 @@ static bool is_lit(const btf *b, const meeting *m, uint64_t key, uint32_t index)
 static bool follow(const btf *b, weft_vec3 direction, uint64_t key, uint32_t index, double sum[3])
 {
     weft_vec3 from = b->eye;
-    for (int i = 0; i < MOST_LAYERS; i++) {
+    for (int i = 0; i < MOST_COMPONENTS; i++) {
         weft_seen_vertex vertex[1 + WEFT_STITCH_SAMPLE_MAX_BOUNCES];
         meeting m;
         if (!meet(b, from, direction, &m))

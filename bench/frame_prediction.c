@@ -1,13 +1,13 @@
 /* Whether the frame time of at most 64 x 64 texels, by which weft compress --preset predicts, is that of the whole
- * material: `bench_frame_prediction NAME.btf.h5 LAYERS` (0: two lobes and T). Both are drawn in turn, as the price list
- * draws them. Prints the least and the median of TRIES, by the wall and by the processor: other programs on the machine
- * lengthen the first. */
+ * material: `bench_frame_prediction NAME.btf.h5 COMPONENTS` (0: two lobes and T). Both are drawn in turn, as the price
+ * list draws them. Prints the least and the median of TRIES, by the wall and by the processor: other programs on the
+ * machine lengthen the first. */
 #include "base/numeric/statistics.h"
 #include "bench/measure.h"
 #include "compress/compress.h"
+#include "compress/hold_out/excerpt.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"
-#include "study/hold_out/excerpt.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,14 +41,14 @@ static weft_dataset *take_texels(weft_dataset *dataset)
     return block;
 }
 
-static void compress(const char *path, int layers, weft_material material[MATERIALS])
+static void compress(const char *path, int components, weft_material material[MATERIALS])
 {
     weft_error error = {0};
     weft_dataset *dataset;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = layers;
-    options.lobe_count = layers > 0 ? 0 : 2;
-    options.table = layers == 0;
+    options.component_count = components;
+    options.lobe_count = components > 0 ? 0 : 2;
+    options.table = components == 0;
     stop_on(weft_dataset_open(path, &dataset, &error), &error);
     weft_dataset *block = take_texels(dataset);
     options.heights = false; /* those of the whole are given afterwards */
@@ -129,7 +129,7 @@ int main(int argc, char **argv)
     weft_headless *headless;
     weft_player *player;
     if (argc != 3) {
-        fprintf(stderr, "Usage: bench_frame_prediction NAME.btf.h5 LAYERS\n");
+        fprintf(stderr, "Usage: bench_frame_prediction NAME.btf.h5 COMPONENTS\n");
         return WEFT_BAD_USAGE;
     }
     compress(argv[1], atoi(argv[2]), material);

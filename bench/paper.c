@@ -157,7 +157,7 @@ static weft_code compare_levels(weft_dataset *dataset, const arguments *given, c
 static weft_code compare(weft_dataset *dataset, const arguments *given, weft_error *error)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_material ours, frames = {0};
     weft_bundle bundle = {0};
     uint64_t bytes = 0;

@@ -4,13 +4,13 @@
  * [--size WxH] [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "base/numeric/statistics.h"
 #include "bench/measure.h"
+#include "compare/pictures/picture_quality.h"
 #include "player/draw/moving.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
 #include "player/texture/fetches.h"
 #include "reflectance/lafortune/lafortune.h"
-#include "study/error/picture_quality.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,9 +5,9 @@
 #include "bench/measure.h"
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
+#include "compare/tradeoff/preset.h"
 #include "compress/compress.h"
-#include "study/hold_out/hold_out.h"
-#include "study/tradeoff/preset.h"
+#include "compress/hold_out/hold_out.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,11 +25,11 @@ static weft_compress_options options_of(const char *model)
     weft_compress_options options = weft_compress_default_options();
     size_t letters = strcspn(model, "0123456789");
     double number = atof(model + letters);
-    bool has_layers = strncmp(model, "layers", letters) == 0;
-    options.layer_count = has_layers ? (int)number : 0;
-    options.table = !has_layers;
-    if (has_layers || strncmp(model, "lobes", letters) == 0)
-        options.lobe_count = has_layers ? 0 : (int)number;
+    bool has_components = strncmp(model, "components", letters) == 0;
+    options.component_count = has_components ? (int)number : 0;
+    options.table = !has_components;
+    if (has_components || strncmp(model, "lobes", letters) == 0)
+        options.lobe_count = has_components ? 0 : (int)number;
     else if (strncmp(model, "error", letters) == 0)
         options.target_error = number / 100;
     else

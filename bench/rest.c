@@ -2,11 +2,11 @@
  * draws at rest, against many. FLIP and RMSE of what the screen shows, and processor time of a frame. 0 frames: one
  * that moves. Usage: bench_rest NAME.weft|CLOTH.wv [FRAMES...] */
 #include "bench/measure.h"
+#include "compare/pictures/picture_quality.h"
 #include "player/draw/resting.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
-#include "study/error/picture_quality.h"
 
 #include <math.h>
 #include <stdint.h>

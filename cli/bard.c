@@ -1,5 +1,5 @@
 #include "cli/command/arguments.h"
-#include "study/bard/predict.h"
+#include "compress/bard/predict.h"
 
 #include <stdio.h>
 #include <string.h>

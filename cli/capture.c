@@ -1,11 +1,11 @@
 #include "capture/capture.h"
 #include "btf/session/poses_file.h"
 #include "capture/laboratory/laboratory.h"
+#include "capture/preflight/preflight.h"
 #include "capture/virtual/ground_truth.h"
 #include "cli/capture_words.h"
 #include "cli/command/arguments.h"
 #include "cli/command/person.h"
-#include "study/preflight/preflight.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
 #define WEFT_CLI_CAPTURE_WORDS_H
 
 #include "capture/capture.h"
+#include "capture/preflight/preflight.h"
 #include "cli/command/arguments.h"
-#include "study/preflight/preflight.h"
 
 /* `in_order`: the stage chose an order, and knows how long it takes. */
 void weft_say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order);

@@ -1,7 +1,7 @@
-#include "study/compare/compare.h"
+#include "compare/report/compare.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
-#include "study/bard/predict.h"
+#include "compress/bard/predict.h"
 
 #include <stdio.h>
 

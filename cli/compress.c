@@ -5,8 +5,8 @@
 #include "cli/command/arguments.h"
 #include "cli/compress_held_out.h"
 #include "cli/compress_words.h"
-#include "study/hold_out/hold_out.h"
-#include "study/inspect/model_report.h"
+#include "inspect/model_report.h"
+#include "compress/hold_out/hold_out.h"
 
 #include <limits.h>
 #include <math.h>
@@ -19,8 +19,8 @@ typedef struct compress_command {
     weft_common_options common;
     const char *input, *output, *report;
     weft_compress_options options;
-    int hold_out;             /* splits; 0: off */
-    int lobes, table, layers; /* NOT_GIVEN, or as in the options */
+    int hold_out;                 /* splits; 0: off */
+    int lobes, table, components; /* NOT_GIVEN, or as in the options */
     weft_preset preset;
     double least_fps; /* 0: any */
 } compress_command;
@@ -79,18 +79,21 @@ static const weft_option option_table[] = {
     {"output", 'o', "NAME.weft", "The material to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(compress_command, output)},
     {"lobes", .argument = "0..3",
-     .help = "Lafortune lobes a texel and channel, at most, instead of layers (default: 2 where there are no layers)",
+     .help = "Lafortune lobes a texel and channel, at most, instead of components (default: 2 where there are no "
+             "components)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, lobes), .low = 0, .high = WEFT_MATERIAL_MAX_LOBES},
     {"table", .argument = "on|off",
-     .help = "View table T beside the lobes, where the samples can carry it (default: on, without layers)",
+     .help = "View table T beside the lobes, where the samples can carry it (default: on, without components)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, table), .words = switch_words},
-    {"layers", .argument = "K",
+    {"components", .argument = "K",
      .help =
-         "K linear layers, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share; 0: none. "
-         "Without --lobes and --table there is a diffuse term beside them, for players without layers (default: 8 for "
+         "K components, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share; 0: none. "
+         "Without --lobes and --table there is a diffuse term beside them, for players without components (default: 8 "
+         "for "
          "fewer than 20 images, 16 for fewer than 100, else 32; 0 for fewer than 20 near images, and where an option "
          "asks for lobes or tables)",
-     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, layers), .low = 0, .high = WEFT_LAYERS_MAX},
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, components), .low = 0,
+     .high = WEFT_COMPONENTS_MAX},
     {"light-table", .argument = "on|off",
      .help = "Light table S beside T, as large and several times the time; where lights repeat (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.light_table)},
@@ -106,11 +109,12 @@ static const weft_option option_table[] = {
     {"levels", .argument = "on|off", .help = "Mip levels (default: on)", .kind = WEFT_OPTION_SWITCH,
      .offset = offsetof(compress_command, options.levels)},
     {"heights", .argument = "on|off",
-     .help = "With layers: see them through the heights that `weft relief` found, where held-out photographs say that "
-             "this helps (default: on)",
+     .help =
+         "With components: see them through the heights that `weft relief` found, where held-out photographs say that "
+         "this helps (default: on)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.heights)},
     {"rounding", .argument = "on|off",
-     .help = "With layers: round their numbers where what they leave of the photographs hides it. Files of small "
+     .help = "With components: round their numbers where what they leave of the photographs hides it. Files of small "
              "cloths are a third as large; Weft of before 27 November 2026 does not read it (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.rounded)},
     {"frames", .argument = "on|off|given",
@@ -133,7 +137,8 @@ static const weft_option option_table[] = {
      .read = read_budget},
     {"preset", .argument = "small|balanced|best",
      .help =
-         "Choose lobes, tables or layers: tries models on some texels, without some of the views and of the lights, "
+         "Choose lobes, tables or components: tries models on some texels, without some of the views and of the "
+         "lights, "
          "and says before the work how large the file will be and how well it will predict these; afterwards how "
          "large it is, and how well it does. small: few bytes; best: the least error; balanced: between them, where "
          "more bytes gain little (see tradeoff)",
@@ -177,26 +182,26 @@ static bool chooses_by_texel(const weft_compress_options *options)
 static weft_code check_preset(const compress_command *command, weft_error *error)
 {
     const weft_compress_options usual = weft_compress_default_options(), *o = &command->options;
-    bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->layers != NOT_GIVEN ||
+    bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->components != NOT_GIVEN ||
                   o->light_table || o->table_components > 0 || o->rounded || o->frames != usual.frames ||
                   chooses_by_texel(o);
     if (wish_of(command).preset == WEFT_PRESET_NONE || !chosen)
         return WEFT_OK;
     return weft_fail(
         error, WEFT_BAD_USAGE,
-        "--preset and --fps choose the model: leave out --lobes, --table, --light-table, --tables, --layers, "
+        "--preset and --fps choose the model: leave out --lobes, --table, --light-table, --tables, --components, "
         "--rounding, --frames, --error and --budget");
 }
 
-/* Where layers are chosen by the number of photographs, weft_compress says it. */
+/* Where components are chosen by the number of photographs, weft_compress says it. */
 static weft_code check_rounding(const compress_command *command, weft_error *error)
 {
     const weft_compress_options *o = &command->options;
     bool of_lobes = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || o->light_table ||
                     o->table_components > 0 || chooses_by_texel(o);
-    if (!o->rounded || command->layers > 0 || (command->layers == NOT_GIVEN && !of_lobes))
+    if (!o->rounded || command->components > 0 || (command->components == NOT_GIVEN && !of_lobes))
         return WEFT_OK;
-    return weft_fail(error, WEFT_BAD_USAGE, "--rounding is for layers: ask for some with --layers");
+    return weft_fail(error, WEFT_BAD_USAGE, "--rounding is for components: ask for some with --components");
 }
 
 static weft_code check(void *values, weft_error *error)
@@ -205,13 +210,13 @@ static weft_code check(void *values, weft_error *error)
     const weft_compress_options *o = &command->options;
     WEFT_TRY(check_preset(command, error));
     WEFT_TRY(check_rounding(command, error));
-    if (command->layers > 0 && command->layers % WEFT_LAYERS_GROUP != 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
-                         command->layers);
+    if (command->components > 0 && command->components % WEFT_COMPONENTS_GROUP != 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "--components is a multiple of %d, not %d", WEFT_COMPONENTS_GROUP,
+                         command->components);
     bool chooses = chooses_by_texel(o);
-    if (command->layers > 0 && chooses)
+    if (command->components > 0 && chooses)
         return weft_fail(error, WEFT_BAD_USAGE,
-                         "--error and --budget choose lobes and tables for each texel: leave out --layers");
+                         "--error and --budget choose lobes and tables for each texel: leave out --components");
     if (o->target_error > 0 && o->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "give --error or --budget, not both");
     if (o->table_components > 0 && chooses)
@@ -232,24 +237,27 @@ static weft_code check_output(const char *path, weft_error *error)
     return code;
 }
 
-/* Beside layers lobes are for those who cannot play layers, unless they were asked for; opacity lies in the table. */
+/* Beside components lobes are for those who cannot play components, unless they were asked for; opacity lies in the
+ * table. */
 static weft_compress_options resolve(const compress_command *command, const weft_dataset *dataset)
 {
     weft_compress_options options = command->options;
     bool lobes_given = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN;
-    bool alone = command->layers == NOT_GIVEN || command->layers == 0;
-    options.layer_count = command->layers != NOT_GIVEN ? command->layers : lobes_given ? 0 : WEFT_LAYERS_AUTOMATIC;
+    bool alone = command->components == NOT_GIVEN || command->components == 0;
+    options.component_count = command->components != NOT_GIVEN ? command->components
+                              : lobes_given                    ? 0
+                                                               : WEFT_COMPONENTS_AUTOMATIC;
     options.lobe_count = command->lobes != NOT_GIVEN ? command->lobes : alone ? options.lobe_count : 0;
     options.table = command->table != NOT_GIVEN ? command->table : alone || weft_dataset_has_opacity(dataset);
     return weft_compress_settle(&options, dataset);
 }
 
-/* Lobes that nobody has asked for, in place of layers that nobody has asked for. */
+/* Lobes that nobody has asked for, in place of components that nobody has asked for. */
 static void ask_lobes(const compress_command *command, const weft_held_out_job *job, weft_dataset *dataset,
                       const weft_compress_options *options, const weft_hold_out *held_out)
 {
     compress_command other = *command;
-    bool by_default = command->layers == NOT_GIVEN && options->layer_count > 0 &&
+    bool by_default = command->components == NOT_GIVEN && options->component_count > 0 &&
                       wish_of(command).preset == WEFT_PRESET_NONE && !chooses_by_texel(options);
     other.lobes = 1;
     const weft_compress_options lobes = resolve(&other, dataset);
@@ -357,7 +365,7 @@ static int run(int argc, char **argv)
                                 .hold_out = NOT_GIVEN,
                                 .lobes = NOT_GIVEN,
                                 .table = NOT_GIVEN,
-                                .layers = NOT_GIVEN};
+                                .components = NOT_GIVEN};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     weft_error error = {0};
     char partial_path[PATH_MAX];
@@ -374,7 +382,7 @@ const weft_command weft_command_compress = {
     .summary = "fit a small model of reflectance to a dataset",
     .usage = "NAME.btf.h5 -o NAME.weft",
     .documentation = "Example: weft compress cloth.btf.h5 -o cloth.weft\n\n"
-                     "Fits a small model to every texel of every mip level of a dataset: linear layers, whose tables "
+                     "Fits a small model to every texel of every mip level of a dataset: components, whose tables "
                      "all texels share, or with --lobes 2 Lafortune lobes with a view table, which need no table "
                      "of their neighbours, can be edited and reach beyond what was photographed. It measures what the "
                      "result leaves: of the samples that it was fitted to, and of directions that it was not. With too "

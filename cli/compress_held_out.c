@@ -3,8 +3,9 @@
 #include <limits.h>
 #include <stdio.h>
 
-/* Layers that leave more have missed what the material is; and lobes are worth a word that leave at most this share. */
-static const double layers_fail = 0.5, clearly_less = 0.75;
+/* Components that leave more have missed what the material is; and lobes are worth a word that leave at most this
+ * share. */
+static const double components_fail = 0.5, clearly_less = 0.75;
 
 static weft_code measure(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *options,
                          weft_hold_out *result, weft_error *error)
@@ -40,18 +41,18 @@ weft_code weft_measure_held_out(const weft_held_out_job *job, weft_dataset *data
 }
 
 void weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
-                    const weft_hold_out *of_layers)
+                    const weft_hold_out *of_components)
 {
     weft_hold_out of_lobes = {0};
     weft_error own = {0};
-    double layers_error = of_layers->material.all.relative_rmse;
-    if (of_layers->split_count == 0 || !(layers_error > layers_fail))
+    double components_error = of_components->material.all.relative_rmse;
+    if (of_components->split_count == 0 || !(components_error > components_fail))
         return;
     if (measure(job, dataset, lobes, &of_lobes, &own) != WEFT_OK)
         return;
     double lobes_error = of_lobes.material.all.relative_rmse;
-    if (lobes_error < clearly_less * layers_error)
+    if (lobes_error < clearly_less * components_error)
         weft_command_say(job->common,
-                         "layers leave %.1f %% %s, one lobe %.1f %%: try --lobes 1, 2 or 3, or --preset best",
-                         100 * layers_error, weft_hold_out_about(of_layers), 100 * lobes_error);
+                         "components leave %.1f %% %s, one lobe %.1f %%: try --lobes 1, 2 or 3, or --preset best",
+                         100 * components_error, weft_hold_out_about(of_components), 100 * lobes_error);
 }

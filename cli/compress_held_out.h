@@ -4,7 +4,7 @@
 
 #include "cli/command/arguments.h"
 #include "compress/compress.h"
-#include "study/hold_out/hold_out.h"
+#include "compress/hold_out/hold_out.h"
 
 enum { WEFT_ENOUGH_SPLITS = -1 };
 
@@ -17,15 +17,15 @@ typedef struct weft_held_out_job {
 
 /* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
  * told, and `result` has no splits: what concerns the whole, too, its fit will say. The options learn how much is added
- * to the file, and whether layers are seen through heights. Errors: those of weft_hold_out_measure but WEFT_BAD_USAGE
- * and WEFT_BAD_INPUT. */
+ * to the file, and whether components are seen through heights. Errors: those of weft_hold_out_measure but
+ * WEFT_BAD_USAGE and WEFT_BAD_INPUT. */
 weft_code weft_measure_held_out(const weft_held_out_job *job, weft_dataset *dataset, weft_compress_options *options,
                                 weft_hold_out *result, weft_error *error);
 
-/* Layers of which more than half is wrong where they were not fitted, as of a cloth that shines back in a beam narrower
- * than the photographs are apart: then the same directions are asked of `lobes`, too, and the user is told where they
- * leave clearly less. Nobody asked for it: where it fails nothing is said. */
+/* Components of which more than half is wrong where they were not fitted, as of a cloth that shines back in a beam
+ * narrower than the photographs are apart: then the same directions are asked of `lobes`, too, and the user is told
+ * where they leave clearly less. Nobody asked for it: where it fails nothing is said. */
 void weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
-                    const weft_hold_out *of_layers);
+                    const weft_hold_out *of_components);
 
 #endif

@@ -4,8 +4,8 @@
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "cli/command/describe.h"
-#include "study/blend/blend.h"
-#include "study/tradeoff/frame_timer.h"
+#include "compare/tradeoff/frame_timer.h"
+#include "edit/blend/blend.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,11 +17,11 @@ static const double visible_share = 0.1, visible_difference = 1.5;
 /* Of more no seam is looked for: it would take more memory than the fit. */
 static const long most_texels_of_seam = 1L << 20;
 
-/* What a model for few images, or layers, make nothing of. */
+/* What a model for few images, or components, make nothing of. */
 static void say_idle(const weft_common_options *common, const weft_compress_options *given, const char *why)
 {
     const weft_compress_options usual = weft_compress_default_options();
-    if (given->weights != usual.weights && given->layer_count == 0)
+    if (given->weights != usual.weights && given->component_count == 0)
         weft_command_say(common, "with %s --weights changes nothing", why);
     if (given->frames != usual.frames)
         weft_command_say(common, "with %s --frames changes nothing", why);
@@ -29,9 +29,9 @@ static void say_idle(const weft_common_options *common, const weft_compress_opti
         weft_command_say(common, "with %s --max-exponent changes nothing", why);
 }
 
-static bool has_layers_alone(const weft_compress_options *options)
+static bool has_components_alone(const weft_compress_options *options)
 {
-    return options->layer_count > 0 && options->lobe_count == 0;
+    return options->component_count > 0 && options->lobe_count == 0;
 }
 
 static void say_model(const weft_compressed *done)
@@ -41,9 +41,9 @@ static void say_model(const weft_compressed *done)
     const weft_compress_report *report = done->report;
     const weft_dataset_layout *layout = weft_dataset_get_layout(done->dataset);
     const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
-    if (has_layers_alone(options))
-        weft_command_say(common, "%d x %d texels, %d images, %d layers", layout->width, layout->height,
-                         layout->image_count, options->layer_count);
+    if (has_components_alone(options))
+        weft_command_say(common, "%d x %d texels, %d images, %d components", layout->width, layout->height,
+                         layout->image_count, options->component_count);
     else
         weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
                          layout->image_count, report->lobe_count, table,
@@ -52,13 +52,13 @@ static void say_model(const weft_compressed *done)
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
     if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
-    if (has_layers_alone(options))
-        say_idle(common, options, "layers instead of lobes");
+    if (has_components_alone(options))
+        say_idle(common, options, "components instead of lobes");
     else if (report->model == WEFT_COMPRESS_SPARSE)
         say_idle(common, options, "so few images");
     else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(done->dataset))
         weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
-    if (report->model == WEFT_COMPRESS_SPARSE && options->layer_count == 0)
+    if (report->model == WEFT_COMPRESS_SPARSE && options->component_count == 0)
         weft_command_say(common,
                          "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
                          "neighbours, only amplitudes are the texel's own",
@@ -70,7 +70,7 @@ static void say_model(const weft_compressed *done)
     weft_command_say(common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
                      100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
                      report->texel_count);
-    if (!has_layers_alone(options))
+    if (!has_components_alone(options))
         weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
                          100.0 * (double)report->turned_frame_count / (double)report->texel_count,
                          100.0 * (double)report->second_start_count / (double)report->texel_count);
@@ -124,7 +124,7 @@ static weft_code say_hold_out(const weft_common_options *common, const weft_hold
 static void say_errors(const weft_common_options *common, const weft_material *material)
 {
     char errors_of[64] = "";
-    if (material->layers)
+    if (material->components)
         snprintf(errors_of, sizeof errors_of, ",\"errors_of\":\"%s\"", weft_material_errors_of(material));
     weft_command_say(common, "on the samples that were fitted:");
     weft_command_say(common, "level       texels   rel. RMSE  median rel.  80 %% rel.  PSNR dB  RMSE");
@@ -144,55 +144,55 @@ static void say_errors(const weft_common_options *common, const weft_material *m
     }
 }
 
-static void say_layers(const weft_common_options *common, const weft_compress_options *options,
-                       const weft_compress_report *report)
+static void say_components(const weft_common_options *common, const weft_compress_options *options,
+                           const weft_compress_report *report)
 {
     static const char *const kind[] = {"the light", "the half vector", "the half vector, squared incidence"};
     char square[64] = "";
-    const weft_layers_report *layers = &report->layers;
-    if (options->layer_count == 0)
+    const weft_components_report *components = &report->components;
+    if (options->component_count == 0)
         return;
-    if (layers->scattered && layers->left_out_count < 2)
+    if (components->scattered && components->left_out_count < 2)
         weft_command_say(common,
                          "a photograph alone tells nothing of other directions: what is said of them is a guess");
-    else if (layers->scattered)
+    else if (components->scattered)
         weft_command_say(
             common,
             "photographs that are no grid: completed by kriging; relative RMSE %.2f %% where each of %d is "
             "predicted by the others of these",
-            100 * layers->left_out_error, layers->left_out_count);
-    if (!layers->scattered)
-        snprintf(square, sizeof square, ", %.2f %% with its squared incidence", 100 * layers->trial_error[2]);
+            100 * components->left_out_error, components->left_out_count);
+    if (!components->scattered)
+        snprintf(square, sizeof square, ", %.2f %% with its squared incidence", 100 * components->trial_error[2]);
     weft_command_say(common,
-                     "%d layers over %s, learned from %d texels; on images %s to choose: %.2f %% over the light, "
+                     "%d components over %s, learned from %d texels; on images %s to choose: %.2f %% over the light, "
                      "%.2f %% over the half vector%s (relative RMSE)",
-                     options->layer_count, kind[layers->kind], layers->training_texels,
-                     layers->scattered ? "fitted" : "held out", 100 * layers->trial_error[0],
-                     100 * layers->trial_error[1], square);
+                     options->component_count, kind[components->kind], components->training_texels,
+                     components->scattered ? "fitted" : "held out", 100 * components->trial_error[0],
+                     100 * components->trial_error[1], square);
     weft_command_say(
         common,
-        "layers at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "
+        "components at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "
         "PSNR %.2f dB",
-        100 * layers->fitted.relative_rmse, 100 * layers->fitted.median_relative,
-        100 * layers->fitted.percentile80_relative, layers->fitted.psnr_db);
-    weft_command_say(common, "the %s beside them, for players without layers:",
-                     has_layers_alone(options) ? "diffuse term" : "lobes");
+        100 * components->fitted.relative_rmse, 100 * components->fitted.median_relative,
+        100 * components->fitted.percentile80_relative, components->fitted.psnr_db);
+    weft_command_say(common, "the %s beside them, for players without components:",
+                     has_components_alone(options) ? "diffuse term" : "lobes");
 }
 
 /* The last code of a ceiling stands for all that is above: a sample in photons or counts, not reflectance, is cut. */
 static void say_ceiling(const weft_compressed *done)
 {
-    const weft_layers *layers = done->material->layers;
-    if (!layers)
+    const weft_components *components = done->material->components;
+    if (!components)
         return;
-    const weft_layers_level *finest = &layers->level[0];
+    const weft_components_level *finest = &components->level[0];
     size_t count = weft_ceiling_count(finest->width, finest->height), cut = 0;
     for (size_t i = 0; i < count; i++)
         cut += finest->ceiling[i] == UINT8_MAX;
     if (cut > 0)
         weft_command_say(
             done->common,
-            "layers say no more than %.0f, and samples come near that or above it in %zu of %zu squares of "
+            "components say no more than %.0f, and samples come near that or above it in %zu of %zu squares of "
             "%d x %d texels: is a white diffuser 1 in them? else divide them, or fit lobes (--lobes 2)",
             (double)weft_ceiling_of_code(UINT8_MAX), cut, count, WEFT_CEILING_SIDE, WEFT_CEILING_SIDE);
 }
@@ -307,7 +307,7 @@ weft_code weft_say_compressed(const weft_compressed *done, weft_error *error)
     say_target(done);
     if (done->held_out->split_count > 0)
         WEFT_TRY(say_hold_out(done->common, done->held_out, error));
-    say_layers(done->common, done->options, done->report);
+    say_components(done->common, done->options, done->report);
     say_errors(done->common, done->material);
     say_ceiling(done);
     say_seam(done);

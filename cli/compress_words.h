@@ -3,9 +3,9 @@
 #define WEFT_CLI_COMPRESS_WORDS_H
 
 #include "cli/command/arguments.h"
+#include "compare/tradeoff/preset.h"
 #include "compress/compress.h"
-#include "study/hold_out/hold_out.h"
-#include "study/tradeoff/preset.h"
+#include "compress/hold_out/hold_out.h"
 
 /* A dataset that has been compressed, and written to `output`. */
 typedef struct weft_compressed {

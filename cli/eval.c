@@ -1,6 +1,6 @@
 #include "base/atomic_file.h"
 #include "cli/command/arguments.h"
-#include "study/model/model.h"
+#include "evaluate/model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,7 +45,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(eval_command, output)},
     {"noise", .argument = "SEED|off", .help = "Evaluate a weave with its noise (default: off)",
      .kind = WEFT_OPTION_NOISE, .offset = offsetof(eval_command, noise_seed)},
-    {"lobes", .help = "Evaluate the lobes of a .weft that has layers, too", .kind = WEFT_OPTION_FLAG,
+    {"lobes", .help = "Evaluate the lobes of a .weft that has components, too", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(eval_command, options.lobes)},
     {"interval",
      .help = "Of a .weft with a certificate: add the ends of its interval of 95 %, r_low, r_high, ...; "

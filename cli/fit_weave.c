@@ -1,4 +1,4 @@
-#include "study/fit_weave/fit_weave.h"
+#include "compress/weave_fit/fit_weave.h"
 #include "cli/command/arguments.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
-#include "capture/hand/hand.h"
+#include "capture/synthetic/synthetic.h"
 #include "cli/command/arguments.h"
 
 #include <stdlib.h>
 
 typedef struct hand_command {
     weft_common_options common;
-    weft_snap_request request;
+    weft_synthetic_request request;
 } hand_command;
 
 static const char *const set_names[] = {"free", "flash", "tripod", "stepped", NULL};
@@ -67,7 +67,7 @@ static const weft_option option_table[] = {
 
 static weft_code check(void *values, weft_error *error)
 {
-    const weft_snap_request *request = &((const hand_command *)values)->request;
+    const weft_synthetic_request *request = &((const hand_command *)values)->request;
     if (request->rubbish_count >= request->photograph_count)
         return weft_fail(error, WEFT_BAD_USAGE, "--rubbish %d leaves no photograph of %d", request->rubbish_count,
                          request->photograph_count);
@@ -79,12 +79,12 @@ static weft_code check(void *values, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    hand_command command = {.request = weft_snap_request_default()};
+    hand_command command = {.request = weft_synthetic_request_default()};
     char warning[WEFT_MESSAGE_SIZE] = "";
     weft_error error = {0};
     weft_arguments_parse(&weft_command_hand, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
-    weft_code code = weft_snap_run(&command.request, &progress, warning, &error);
+    weft_code code = weft_synthetic_run(&command.request, &progress, warning, &error);
     if (warning[0])
         weft_command_say(&command.common, "%s", warning);
     if (code == WEFT_OK)

@@ -1,8 +1,8 @@
+#include "registration/photographs/photographs.h"
 #include "base/atomic_file.h"
 #include "btf/session/lens.h"
 #include "cli/command/arguments.h"
-#include "registration/hand/hand.h"
-#include "registration/hand/report.h"
+#include "registration/photographs/report.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@ typedef struct photographs_command {
     weft_common_options common;
     const char *input, *output, *report_folder, *lens, *colour, *lights;
     double opening_mm, paper_reflectance;
-    weft_hand_settings settings;
+    weft_photographs_settings settings;
 } photographs_command;
 
 enum { LARGEST_SIZE = 8192 };
@@ -55,7 +55,7 @@ static const weft_option option_table[] = {
 static void say_left_out(const photographs_command *command, const weft_hand *hand)
 {
     for (int i = 0; i < hand->count; i++) {
-        if (!weft_hand_used(&hand->photograph[i]))
+        if (!weft_photographs_used(&hand->photograph[i]))
             weft_command_say(&command->common, "left out '%s': %s", hand->photograph[i].name,
                              hand->photograph[i].remark);
     }
@@ -83,10 +83,10 @@ static void say_outcome(const photographs_command *command, const weft_hand *han
     for (int i = 0; i < hand->notes.count; i++)
         weft_command_say(&command->common, "%s", hand->notes.line[i]);
     say_lens(command, &hand->lens);
-    char words[WEFT_HAND_WORDS_SIZE];
-    weft_hand_describe_tone(hand, words);
+    char words[WEFT_PHOTOGRAPHS_WORDS_SIZE];
+    weft_photographs_describe_tone(hand, words);
     weft_command_say(&command->common, "tone curve: %s", words);
-    weft_hand_describe_masks(hand, &command->settings, words);
+    weft_photographs_describe_masks(hand, &command->settings, words);
     weft_command_say(&command->common, "masks: %s", words);
     if (command->settings.colour)
         weft_command_say(&command->common,
@@ -106,7 +106,8 @@ static weft_code check_report_folder(const char *folder, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    photographs_command command = {.opening_mm = 50, .paper_reflectance = 0.85, .settings = weft_hand_defaults()};
+    photographs_command command = {
+        .opening_mm = 50, .paper_reflectance = 0.85, .settings = weft_photographs_defaults()};
     weft_arguments_parse(&weft_command_photographs, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
     command.settings.target = weft_target_printed(command.opening_mm);
@@ -130,12 +131,12 @@ static int run(int argc, char **argv)
     if (code == WEFT_OK && command.report_folder)
         code = check_report_folder(command.report_folder, &error);
     if (code == WEFT_OK)
-        code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
+        code = weft_photographs_register(command.input, command.output, &command.settings, &progress, &hand, &error);
     if (code == WEFT_OK) {
         say_outcome(&command, &hand);
         if (command.report_folder)
-            code = weft_hand_report(command.report_folder, command.output, &command.settings, &hand, &error);
-        weft_hand_free(&hand);
+            code = weft_photographs_report(command.report_folder, command.output, &command.settings, &hand, &error);
+        weft_photographs_free(&hand);
     }
     weft_light_list_free(&lights);
     return weft_command_exit("photographs", &command.common, code, &error);

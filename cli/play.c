@@ -1,7 +1,7 @@
 #include "cli/command/arguments.h"
+#include "compare/pictures/scene_error.h"
 #include "player/gl/context.h"
 #include "player/window/application.h"
-#include "study/error/scene_error.h"
 
 #include <limits.h>
 

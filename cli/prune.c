@@ -1,4 +1,4 @@
-#include "study/prune/prune.h"
+#include "edit/prune/prune.h"
 #include "base/atomic_file.h"
 #include "btf/material/metadata.h"
 #include "cli/command/arguments.h"
@@ -58,9 +58,9 @@ static void say_reach(const weft_common_options *common, const weft_prune_report
     if (r->views.of > 0 || r->lights.of > 0)
         weft_command_say(common, "tables    %ld of %ld views, %ld of %ld lights; %ld lobes of texels are gone",
                          r->views.kept, r->views.of, r->lights.kept, r->lights.of, r->lobes_gone);
-    if (r->layers.of > 0)
-        weft_command_say(common, "layers    %ld of %ld; %ld of %ld images; values rounded to %.2g of reflectance",
-                         r->layers.kept, r->layers.of, r->images.kept, r->images.of, r->value_step);
+    if (r->components.of > 0)
+        weft_command_say(common, "components    %ld of %ld; %ld of %ld images; values rounded to %.2g of reflectance",
+                         r->components.kept, r->components.of, r->images.kept, r->images.of, r->value_step);
 }
 
 static void say_errors(const weft_common_options *common, const weft_prune_report *r)

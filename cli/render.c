@@ -1,9 +1,9 @@
 #include "cli/command/arguments.h"
+#include "compare/pictures/scene_error.h"
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
 #include "player/settings/sequence.h"
 #include "player/window/scene_loader.h"
-#include "study/error/scene_error.h"
 
 enum { DEFAULT_FPS = 25 };
 
@@ -70,7 +70,7 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
-/* Whether something of lobes or tables is asked for that layers do not have. */
+/* Whether something of lobes or tables is asked for that components do not have. */
 static bool asks_of_lobes(const weft_scene *scene)
 {
     const weft_scene usual = weft_scene_default();
@@ -94,9 +94,10 @@ static weft_code look(const render_command *command, weft_player *player, weft_s
     WEFT_TRY(weft_describe_unmeasured(request, player, scene, text, error));
     if (text[0])
         weft_command_say(common, "%s", text);
-    if (weft_player_layer_count(player) > 0 && scene->layers >= WEFT_LAYERS_GROUP && asks_of_lobes(scene))
-        weft_command_say(common, "the material is drawn by its layers: --lobes-on, --tables and --table-bits change "
-                                 "nothing without --layers 0");
+    if (weft_player_layer_count(player) > 0 && scene->components >= WEFT_COMPONENTS_GROUP && asks_of_lobes(scene))
+        weft_command_say(common,
+                         "the material is drawn by its components: --lobes-on, --tables and --table-bits change "
+                         "nothing without --components 0");
     return WEFT_OK;
 }
 

@@ -1,7 +1,7 @@
-#include "study/tile/tile.h"
+#include "edit/tile/tile.h"
 #include "btf/file_kind.h"
 #include "cli/command/arguments.h"
-#include "study/blend/blend.h"
+#include "edit/blend/blend.h"
 
 #include <stdio.h>
 #include <string.h>

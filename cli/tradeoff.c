@@ -1,4 +1,4 @@
-#include "study/tradeoff/tradeoff.h"
+#include "compare/tradeoff/tradeoff.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
 
@@ -83,7 +83,7 @@ const weft_command weft_command_tradeoff = {
     .usage = "NAME.btf.h5 -o REPORT/",
     .documentation =
         "Example: weft tradeoff silk.btf.h5 -o silk-prices\n\n"
-        "Fits every model that the dataset can carry: lobes with and without tables, layers, smaller tables, fewer "
+        "Fits every model that the dataset can carry: lobes with and without tables, components, smaller tables, fewer "
         "photographs and texels, BARD from one light, and a weave with --weave. Writes one HTML page: bytes, time of "
         "the fit and of a frame, and the error on "
         "photographs that were held out of the fit, beside that on those that were not; plots of one against the "

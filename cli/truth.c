@@ -2,18 +2,18 @@
 #include "capture/plan.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
+#include "compare/error_budget/sources.h"
 #include "compress/options/options.h"
-#include "study/sources/sources.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
-enum { MOST_CLOTHS = 64, LEAST_QUERIES = 10, MOST_QUERIES = 1000000, MOST_PATHS = 65536, MOST_LAYERS = 32 };
+enum { MOST_CLOTHS = 64, LEAST_QUERIES = 10, MOST_QUERIES = 1000000, MOST_PATHS = 65536, MOST_COMPONENTS = 32 };
 
 typedef struct truth_command {
     weft_common_options common;
-    int cloth_count, layer_count; /* 0 layers: as weft compress chooses */
+    int cloth_count, component_count; /* 0 components: as weft compress chooses */
     const char *cloth[MOST_CLOTHS], *rig_file;
     weft_sources_request request;
     weft_sources result[MOST_CLOTHS];
@@ -45,8 +45,9 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(truth_command, request.tiles), .low = 0, .high = 1000},
     {"texels", .argument = "N", .help = "Texels along a side of the opening (default: 32)", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(truth_command, request.chain.size), .low = 1, .high = 1024},
-    {"layers", .argument = "N", .help = "Layers of the material, at most 32 (default: as weft compress chooses)",
-     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, layer_count), .low = 4, .high = MOST_LAYERS},
+    {"components", .argument = "N",
+     .help = "Components of the material, at most 32 (default: as weft compress chooses)", .kind = WEFT_OPTION_WHOLE,
+     .offset = offsetof(truth_command, component_count), .low = 4, .high = MOST_COMPONENTS},
     {"queries", .argument = "N", .help = "Places, lights and views that are asked for (default: 2000)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.count), .low = LEAST_QUERIES,
      .high = MOST_QUERIES},
@@ -65,7 +66,8 @@ static weft_code check(void *values, weft_error *error)
     weft_plan plan;
     WEFT_TRY(weft_plan_read(command->request.chain.plan, &plan, error));
     weft_plan_free(&plan);
-    command->request.chain.layer_count = command->layer_count > 0 ? command->layer_count : WEFT_LAYERS_AUTOMATIC;
+    command->request.chain.component_count =
+        command->component_count > 0 ? command->component_count : WEFT_COMPONENTS_AUTOMATIC;
     return WEFT_OK;
 }
 

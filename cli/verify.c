@@ -1,6 +1,6 @@
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
-#include "study/inspect/inspect.h"
+#include "inspect/inspect.h"
 
 typedef struct verify_command {
     weft_common_options common;

@@ -1,4 +1,4 @@
-# What every target of Weft shares: language, warnings, packages, and how a room is declared.
+# What every target of Weft shares: language, warnings, packages, and how modules, plugins, kernels and tests are declared.
 set(CMAKE_C_STANDARD 17)
 set(CMAKE_C_STANDARD_REQUIRED ON)
 set(CMAKE_C_EXTENSIONS OFF)
@@ -6,6 +6,10 @@ set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+# One set of objects serves the shared library, the static one and the program. What is not public is hidden.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 
 set(WEFT_SANITIZE "" CACHE STRING "In every target: 'address' (AddressSanitizer and UndefinedBehaviorSanitizer) or 'thread' (ThreadSanitizer)")
 set_property(CACHE WEFT_SANITIZE PROPERTY STRINGS "" address thread)
@@ -56,116 +60,41 @@ find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video videoio aruco mcc)
 
-# ---- Rooms ----
+# ---- Modules ----
 #
-# A room is a folder and a static library. It says which of its headers it SHOWS and which other rooms it builds on, and the compiler
-# finds those headers and no others: the include path of a room holds links to its own headers and to the shown ones of the rooms
-# it LINKS or USES, and never the source tree. An include that points backwards or into another room's own headers does not compile
-# (tests/house tries both).
-set(WEFT_INCLUDE ${CMAKE_BINARY_DIR}/include)
-file(REMOVE_RECURSE ${WEFT_INCLUDE})
+# A module is a folder. All modules make one library. weft_module(FOLDER USES module...) adds its sources: every C file, and the kernels
+# among them once for each instruction set. scripts/check_includes.py holds the sources to the modules that theirs USES.
+add_library(weft_objects OBJECT)
+target_include_directories(weft_objects PUBLIC ${CMAKE_SOURCE_DIR})
+target_link_libraries(weft_objects PUBLIC weft_options OpenMP::OpenMP_C Threads::Threads ${CMAKE_DL_LIBS} PkgConfig::HDF5 PkgConfig::ZSTD PkgConfig::ZLIB
+    PkgConfig::PNG PkgConfig::LCMS PkgConfig::JANSSON PkgConfig::GLFW PkgConfig::LAPACKE PkgConfig::IMGUI PkgConfig::STB PkgConfig::EPOXY PkgConfig::EGL
+    PkgConfig::CONFUSE PkgConfig::GPHOTO2 PkgConfig::HIDAPI PkgConfig::CAIRO embree Ceres::ceres opencv_core opencv_imgproc opencv_calib3d opencv_aruco)
 
-# Private headers of all rooms, for tests and benches.
-add_library(weft_inside INTERFACE)
-target_include_directories(weft_inside INTERFACE ${WEFT_INCLUDE}/inside)
-
-# weft_target_of(RESULT NAME...): compress/fit is weft_compress_fit; what is no folder of the source tree is a package.
-function(weft_target_of result)
-    set(targets "")
-    foreach(name ${ARGN})
-        if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/${name})
-            string(REPLACE "/" "_" name weft_${name})
-        endif()
-        list(APPEND targets ${name})
-    endforeach()
-    set(${result} ${targets} PARENT_SCOPE)
-endfunction()
-
-# Links a header into an include path under its path from the root.
-function(weft_link_header tree header)
-    get_filename_component(folder ${WEFT_INCLUDE}/${tree}/${header} DIRECTORY)
-    file(MAKE_DIRECTORY ${folder})
-    file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${header} ${WEFT_INCLUDE}/${tree}/${header} SYMBOLIC)
-endfunction()
-
-# weft_show_headers(TARGET ROOM SHOWS FOLDERS): lays out the include path of a room.
-function(weft_show_headers target room shows folders)
-    set(headers "")
-    foreach(folder . ${folders})
-        file(GLOB found CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/${room} ${CMAKE_SOURCE_DIR}/${room}/${folder}/*.h)
-        list(APPEND headers ${found})
-    endforeach()
-    foreach(header ${shows})
-        if(NOT header IN_LIST headers)
-            message(FATAL_ERROR "room ${room} shows ${header}, which it does not have")
-        endif()
-    endforeach()
-    file(MAKE_DIRECTORY ${WEFT_INCLUDE}/${target}/shown ${WEFT_INCLUDE}/${target}/own)
-    foreach(header ${headers})
-        if(header IN_LIST shows)
-            weft_link_header(${target}/shown ${room}/${header})
-        else()
-            weft_link_header(${target}/own ${room}/${header})
-            weft_link_header(inside ${room}/${header})
-        endif()
-    endforeach()
-    target_include_directories(${target} PUBLIC ${WEFT_INCLUDE}/${target}/shown PRIVATE ${WEFT_INCLUDE}/${target}/own)
-endfunction()
-
-# weft_room(FOLDER SHOWS header... SOURCES file... LINKS room|package... USES room|package... FOLDERS subfolder...): LINKS what its shown
-# headers include, USES what only its sources need. FOLDERS are parts of the room that are no rooms of their own.
-function(weft_room room)
-    cmake_parse_arguments(room "" "" "SHOWS;SOURCES;LINKS;USES;FOLDERS" ${ARGN})
-    weft_target_of(target ${room})
-    set(sources ${room_SOURCES})
-    list(TRANSFORM sources PREPEND ${CMAKE_SOURCE_DIR}/${room}/ REGEX "^[^/$]")
-    add_library(${target} STATIC ${sources})
-    weft_target_of(links ${room_LINKS})
-    weft_target_of(uses ${room_USES})
-    target_link_libraries(${target} PUBLIC weft_options ${links} PRIVATE ${uses})
-
-    weft_show_headers(${target} ${room} "${room_SHOWS}" "${room_FOLDERS}")
-endfunction()
-
-# Modules are loaded while the program runs. Executables search this folder for them; RPATH, unlike RUNPATH, holds for a sanitizer's
-# dlopen, too.
-set(WEFT_MODULES ${CMAKE_BINARY_DIR}/modules)
-set(CMAKE_BUILD_RPATH ${WEFT_MODULES})
-add_link_options(-Wl,--disable-new-dtags)
-
-# weft_module(ROOM NAME SOURCES file... USES room|package...): sources of a room whose packages are slow to load, as NAME.so, which
-# that room opens when it is needed. Linking the room builds it.
-function(weft_module room name)
-    cmake_parse_arguments(module "" "" "SOURCES;USES" ${ARGN})
-    weft_target_of(target ${room})
-    weft_target_of(uses ${module_USES})
-    list(TRANSFORM module_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/${room}/)
-    add_library(${name} MODULE ${module_SOURCES})
-    target_link_libraries(${name} PRIVATE weft_options ${uses})
-    target_include_directories(${name} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
-    set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${WEFT_MODULES})
-    add_dependencies(${target} ${name})
-endfunction()
-
-# weft_stage(NAME): weft_NAME_stage is all rooms under one top folder, and those that they use, and all of base.
-function(weft_stage name)
-    get_property(targets DIRECTORY ${CMAKE_SOURCE_DIR}/${name} PROPERTY BUILDSYSTEM_TARGETS)
-    list(FILTER targets INCLUDE REGEX "^weft_${name}")
-    add_library(weft_${name}_stage INTERFACE)
-    if(NOT name STREQUAL base)
-        target_link_libraries(weft_${name}_stage INTERFACE weft_base_stage)
+# weft_module(NAME USES module... EXCEPT file... GENERATED file... FOLDERS folder...): EXCEPT are sources of a plugin; FOLDERS are those of the module,
+# if it has more than the one of its name.
+function(weft_module folder)
+    cmake_parse_arguments(module "" "" "USES;EXCEPT;GENERATED;FOLDERS" ${ARGN})
+    set(sources ${module_GENERATED})
+    if(NOT module_FOLDERS)
+        set(module_FOLDERS ${folder})
     endif()
-    foreach(target ${targets})
-        get_target_property(type ${target} TYPE)
-        if(type STREQUAL "STATIC_LIBRARY")
-            get_target_property(used ${target} LINK_LIBRARIES)
-            target_link_libraries(weft_${name}_stage INTERFACE ${target} ${used})
-        endif()
+    foreach(part ${module_FOLDERS})
+        file(GLOB found CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${part}/*.c ${CMAKE_SOURCE_DIR}/${part}/*.cpp)
+        list(APPEND sources ${found})
+    endforeach()
+    foreach(file ${module_EXCEPT})
+        list(FILTER sources EXCLUDE REGEX "/${file}$")
+    endforeach()
+    set(kernels ${sources})
+    list(FILTER kernels INCLUDE REGEX "_kernel\\.c$")
+    list(FILTER sources EXCLUDE REGEX "_kernel\\.c$")
+    target_sources(weft_objects PRIVATE ${sources})
+    foreach(set ${WEFT_INSTRUCTION_SETS})
+        target_sources(weft_kernels_${set} PRIVATE ${kernels})
     endforeach()
 endfunction()
 
-# weft_kernels(ROOM file...): sources that use base/lanes.h, compiled once for each instruction set and added to the room. The
-# instruction set is part of the names of their functions, so that none of another set is ever called by accident.
+# Kernels use base/lanes.h. The instruction set is part of the names of their functions, so that none of another set is called by accident.
 set(WEFT_INSTRUCTION_SETS baseline)
 set(WEFT_FLAGS_baseline "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -173,35 +102,59 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     set(WEFT_FLAGS_avx2 -mavx2 -mfma -mf16c)
     set(WEFT_FLAGS_avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mf16c -mprefer-vector-width=512)
 endif()
-function(weft_kernels room)
-    weft_target_of(target ${room})
-    set(sources ${ARGN})
-    if(NOT target STREQUAL room)
-        list(TRANSFORM sources PREPEND ${CMAKE_SOURCE_DIR}/${room}/)
-    endif()
+# weft_kernel_options(TARGET SET). Multiply-adds in one rounding; vectors wider than a register never cross a call, so that their ABI does not matter.
+function(weft_kernel_options target set)
+    target_link_libraries(${target} PRIVATE weft_options)
+    target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR})
+    target_compile_definitions(${target} PRIVATE WEFT_INSTRUCTION_SET=${set})
+    target_compile_options(${target} PRIVATE -O3 -ffp-contract=fast -fno-trapping-math -Wno-psabi ${WEFT_FLAGS_${set}})
+endfunction()
+foreach(set ${WEFT_INSTRUCTION_SETS})
+    add_library(weft_kernels_${set} OBJECT)
+    weft_kernel_options(weft_kernels_${set} ${set})
+endforeach()
+
+# weft_libraries(): the static library, for the program, tests and benches, and the shared one, for everybody else's programs.
+function(weft_libraries)
+    set(objects $<TARGET_OBJECTS:weft_objects>)
     foreach(set ${WEFT_INSTRUCTION_SETS})
-        set(kernels ${target}_${set})
-        add_library(${kernels} OBJECT ${sources})
-        target_link_libraries(${kernels} PRIVATE weft_options)
-        target_include_directories(${kernels} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
-        target_compile_definitions(${kernels} PRIVATE WEFT_INSTRUCTION_SET=${set})
-        # Multiply-adds in one rounding; vectors wider than a register never cross a call, so that their ABI does not matter.
-        target_compile_options(${kernels} PRIVATE -O3 -ffp-contract=fast -fno-trapping-math -Wno-psabi ${WEFT_FLAGS_${set}})
-        target_sources(${target} PRIVATE $<TARGET_OBJECTS:${kernels}>)
+        list(APPEND objects $<TARGET_OBJECTS:weft_kernels_${set}>)
     endforeach()
+    add_library(weft_static STATIC ${objects})
+    set_target_properties(weft_static PROPERTIES OUTPUT_NAME weft)
+    target_include_directories(weft_static PUBLIC ${CMAKE_SOURCE_DIR})
+    target_link_libraries(weft_static PUBLIC $<TARGET_PROPERTY:weft_objects,INTERFACE_LINK_LIBRARIES>)
 endfunction()
 
-# Tests and benches name their own headers from the root, too.
-foreach(folder tests bench)
-    file(MAKE_DIRECTORY ${WEFT_INCLUDE}/inside)
-    file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${WEFT_INCLUDE}/inside/${folder} SYMBOLIC)
-endforeach()
+# ---- Plugins ----
+#
+# weft_plugin(NAME FOLDER SOURCES file... USES package...): sources whose packages are slow to load, as NAME.so, which the library opens when
+# it is needed. Executables search this folder for them; RPATH, unlike RUNPATH, holds for a sanitizer's dlopen, too.
+set(WEFT_PLUGINS ${CMAKE_BINARY_DIR}/plugins)
+set(CMAKE_BUILD_RPATH ${WEFT_PLUGINS})
+add_link_options(-Wl,--disable-new-dtags)
+add_custom_target(weft_plugins)
+function(weft_plugin name folder)
+    cmake_parse_arguments(plugin "" "" "SOURCES;USES" ${ARGN})
+    list(TRANSFORM plugin_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/${folder}/)
+    add_library(${name} MODULE ${plugin_SOURCES})
+    target_link_libraries(${name} PRIVATE weft_static ${plugin_USES})
+    set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${WEFT_PLUGINS})
+    add_dependencies(weft_plugins ${name})
+endfunction()
+
+# ---- Tests ----
 
 # weft_test(NAME SOURCES file... LINKS target... [LABELS label...]): a cmocka program run by ctest.
 function(weft_test name)
     cmake_parse_arguments(test "" "" "SOURCES;LINKS;LABELS" ${ARGN})
     add_executable(test_${name} ${test_SOURCES})
-    target_link_libraries(test_${name} PRIVATE weft_options weft_inside ${test_LINKS} cmocka)
+    target_link_libraries(test_${name} PRIVATE ${test_LINKS} cmocka)
+    # The pure functions in another precision are a library of their own.
+    if(NOT "weft_single_precision" IN_LIST test_LINKS)
+        target_link_libraries(test_${name} PRIVATE weft_static)
+    endif()
+    add_dependencies(test_${name} weft_plugins)
     target_compile_definitions(test_${name} PRIVATE
         WEFT_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data" WEFT_ASSETS="${CMAKE_SOURCE_DIR}/assets"
         WEFT_SHARED="${CMAKE_SOURCE_DIR}/../shared")

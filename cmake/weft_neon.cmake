@@ -4,11 +4,9 @@ find_program(WEFT_NEON_COMPILER aarch64-linux-gnu-gcc)
 find_program(WEFT_NEON_RUNNER qemu-aarch64)
 
 # weft_neon_program(NAME file...): from plain C sources, some of which may use base/lanes.h, without libraries. Path: ${NAME}_PATH.
-function(weft_neon_program name room)
-    weft_target_of(target ${room})
-    set(shown "-I$<JOIN:$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>,$<SEMICOLON>-I>")
+function(weft_neon_program name)
     # What is computed is checked here, not how fast: -O1 compiles in half the time.
-    set(flags -std=c17 -D_GNU_SOURCE -I${WEFT_INCLUDE}/inside -O1 -Wall -Wextra -Werror -fno-math-errno
+    set(flags -std=c17 -D_GNU_SOURCE -I${CMAKE_SOURCE_DIR} -O1 -Wall -Wextra -Werror -fno-math-errno
         -DWEFT_INSTRUCTION_SET=baseline -ffp-contract=fast -fno-trapping-math -Wno-psabi)
     set(objects)
     foreach(source ${ARGN})
@@ -16,7 +14,7 @@ function(weft_neon_program name room)
         string(REPLACE "/" "_" object ${object})
         set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}_${object}.o)
         add_custom_command(OUTPUT ${object} DEPENDS ${source} DEPFILE ${object}.d
-            COMMAND ${WEFT_NEON_COMPILER} "${shown}" ${flags} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object}
+            COMMAND ${WEFT_NEON_COMPILER} ${flags} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object}
             COMMAND_EXPAND_LISTS)
         list(APPEND objects ${object})
     endforeach()

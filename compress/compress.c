@@ -4,7 +4,7 @@
 #include "base/processor.h"
 #include "btf/dataset/fingerprint.h"
 #include "btf/material/models.h"
-#include "compress/layers/layers_fit.h"
+#include "compress/components/components_fit.h"
 #include "compress/metadata.h"
 #include "compress/run/budget.h"
 #include "compress/run/given_frames.h"
@@ -23,11 +23,12 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-/* Of fewer near images the sparse model, whose texels see highlights for each other, predicts more than layers do. */
+/* Of fewer near images the sparse model, whose texels see highlights for each other, predicts more than components do.
+ */
 enum { SAMPLES_PER_PARAMETER = 4, LEAST_NEAR_IMAGES = 20 };
 
 /* What predicts as well as more do, or nearly (docs/notes/layers.md). */
-static int layers_for(int images)
+static int components_for(int images)
 {
     return images < 20 ? 8 : images < 100 ? 16 : 32;
 }
@@ -39,7 +40,7 @@ static bool ask_for_lobes(const weft_compress_options *options)
            options->table_components > 0;
 }
 
-/* Frames and exponents of lobes ask for them, too, but where images are scattered they are idle beside layers. */
+/* Frames and exponents of lobes ask for them, too, but where images are scattered they are idle beside components. */
 static bool shape_lobes(const weft_compress_options *options)
 {
     const weft_compress_options usual = weft_compress_default_options();
@@ -51,15 +52,15 @@ weft_compress_options weft_compress_settle(const weft_compress_options *options,
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     weft_compress_options settled = *options;
-    if (options->layer_count != WEFT_LAYERS_AUTOMATIC)
+    if (options->component_count != WEFT_COMPONENTS_AUTOMATIC)
         return settled;
-    settled.layer_count = 0;
+    settled.component_count = 0;
     int images = weft_compress_options_count_images(options, layout);
     bool shared = layout->distance == WEFT_NEAR && images < LEAST_NEAR_IMAGES;
     bool is_grid = !weft_images_are_scattered(layout, options->held_out);
     if (shared || ask_for_lobes(options) || (is_grid && shape_lobes(options)))
         return settled;
-    settled.layer_count = layers_for(images);
+    settled.component_count = components_for(images);
     settled.lobe_count = 0;
     settled.table = weft_dataset_has_opacity(dataset);
     return settled;
@@ -174,13 +175,12 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              "layout %08" PRIx32 ", samples %08" PRIx32 ", %lld bytes of %lld.%09ld", fingerprint->layout,
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
-    snprintf(
-        text->options, sizeof text->options,
-        "%s, %d lobes, %d layers, maps %d, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, "
-        "held out %08lx",
-        weft_compress_model_name(report->model), report->lobe_count, options->layer_count, (int)options->layer_maps,
-        options->light_table, (int)options->weights, (int)options->frames, options->max_exponent, options->target_error,
-        options->levels, held_out);
+    snprintf(text->options, sizeof text->options,
+             "%s, %d lobes, %d components, maps %d, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, "
+             "levels %d, held out %08lx",
+             weft_compress_model_name(report->model), report->lobe_count, options->component_count,
+             (int)options->component_maps, options->light_table, (int)options->weights, (int)options->frames,
+             options->max_exponent, options->target_error, options->levels, held_out);
     return WEFT_OK;
 }
 
@@ -195,7 +195,7 @@ typedef struct fitting {
     weft_dataset_fingerprint fingerprint;
     weft_sparse_setting setting;
     weft_texel_counts counts;
-    weft_checkpoint *checkpoint; /* that of the dense model, to which the layers append */
+    weft_checkpoint *checkpoint; /* that of the dense model, to which the components append */
 } fitting;
 
 /* With a target or a budget: which model each texel has is part of the material. */
@@ -300,19 +300,19 @@ static weft_code fit_sparse(fitting *work, weft_material *material, weft_compres
                                     &work->counts, &report->masked_count, error);
 }
 
-static weft_code fit_layers(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
+static weft_code fit_components(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
-    weft_layers_options options = {.layer_count = work->options->layer_count,
-                                   .maps = work->options->layer_maps,
-                                   .finer = work->options->finer,
-                                   .rounded = work->options->rounded,
-                                   .held_out = work->options->held_out,
-                                   .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
-                                   .budget = work->budget,
-                                   .checkpoint = work->checkpoint,
-                                   .log = work->options->log};
-    return options.layer_count > 0
-               ? weft_layers_fit(work->dataset, &options, work->progress, material, &report->layers, error)
+    weft_components_options options = {.component_count = work->options->component_count,
+                                       .maps = work->options->component_maps,
+                                       .finer = work->options->finer,
+                                       .rounded = work->options->rounded,
+                                       .held_out = work->options->held_out,
+                                       .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
+                                       .budget = work->budget,
+                                       .checkpoint = work->checkpoint,
+                                       .log = work->options->log};
+    return options.component_count > 0
+               ? weft_components_fit(work->dataset, &options, work->progress, material, &report->components, error)
                : WEFT_OK;
 }
 
@@ -320,7 +320,7 @@ weft_code weft_compress_take_heights(weft_dataset *dataset, weft_material *mater
 {
     weft_dataset_heights surface;
     double size_mm[2];
-    if (!material->layers)
+    if (!material->components)
         return WEFT_OK;
     weft_material_heights *heights = NULL;
     WEFT_TRY(weft_dataset_read_surface(dataset, &surface, error));
@@ -348,7 +348,7 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
         weft_checkpoint_forget(work->checkpoint);
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(work->dataset));
     }
-    WEFT_TRY(fit_layers(work, material, report, error));
+    WEFT_TRY(fit_components(work, material, report, error));
     if (work->options->heights)
         WEFT_TRY(weft_compress_take_heights(work->dataset, material, error));
     report->texel_count = work->counts.texels;
@@ -371,8 +371,9 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     options = &settled;
     double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
-    if (options->layer_count > 0)
-        WEFT_TRY(weft_layers_check(options->finer ? 2 * options->layer_count : options->layer_count, error));
+    if (options->component_count > 0)
+        WEFT_TRY(
+            weft_components_check(options->finer ? 2 * options->component_count : options->component_count, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
                     .options = options,

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIT_BYTES = 2048 /* of metadata besides the provenance, of lobes: layers have no budget */ };
+enum { FIT_BYTES = 2048 /* of metadata besides the provenance, of lobes: components have no budget */ };
 
 const char *weft_compress_model_name(weft_compress_model model)
 {
@@ -43,7 +43,7 @@ static json_t *list_exponents(const weft_covariance *covariance)
     return numbers;
 }
 
-static json_t *describe_mean(const weft_layers_report *report)
+static json_t *describe_mean(const weft_components_report *report)
 {
     weft_covariance_terms terms = weft_covariance_terms_of(&report->mean);
     return json_pack("{s:[f, f], s:o, s:f, s:f}", "left_out_relative_rmse", report->mean_error[0],
@@ -52,7 +52,7 @@ static json_t *describe_mean(const weft_layers_report *report)
 }
 
 /* And the powers by which highlights grow. */
-static json_t *describe_kriging(const weft_layers_report *report)
+static json_t *describe_kriging(const weft_components_report *report)
 {
     weft_covariance_terms terms = weft_covariance_terms_of(&report->covariance);
     json_t *kriging = json_pack("{s:f, s:i, s:o, s:{s:f, s:f, s:f}}", "left_out_relative_rmse", report->left_out_error,
@@ -65,36 +65,36 @@ static json_t *describe_kriging(const weft_layers_report *report)
 }
 
 /* By kind of maps. Scattered images do not try the last one. */
-static json_t *list_trials(const weft_layers_report *report)
+static json_t *list_trials(const weft_components_report *report)
 {
     json_t *trials = json_array();
-    int tried = report->scattered ? WEFT_LAYERS_OF_HALF_VECTOR_SQUARED : WEFT_LAYERS_KINDS;
+    int tried = report->scattered ? WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED : WEFT_COMPONENTS_KINDS;
     for (int kind = 0; kind < tried; kind++)
         weft_json_append(&trials, json_real(report->trial_error[kind]));
     return trials;
 }
 
-static json_t *describe_layers(const weft_compress_options *options, const weft_layers_report *report)
+static json_t *describe_components(const weft_compress_options *options, const weft_components_report *report)
 {
     static const char *const kind[] = {"light", "half vector", "half vector, squared incidence"};
     const weft_error_summary *fitted = &report->fitted;
-    json_t *layers = json_pack(
-        "{s:i, s:s, s:o, s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->layer_count, "maps_over",
+    json_t *components = json_pack(
+        "{s:i, s:s, s:o, s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->component_count, "maps_over",
         kind[report->kind], "trial_relative_rmse", list_trials(report), "learned_from_texels", report->training_texels,
         "fitted", "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative,
         "rmse", fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
     if (report->scattered)
-        weft_json_put(&layers, "kriging", describe_kriging(report));
-    return layers;
+        weft_json_put(&components, "kriging", describe_kriging(report));
+    return components;
 }
 
-/* Layers are what is drawn. What lies beside them is named where it was asked for. */
+/* Components are what is drawn. What lies beside them is named where it was asked for. */
 static json_t *name_model(const weft_compress_options *options, const weft_compress_report *report)
 {
     const char *beside = weft_compress_model_name(report->model);
-    if (options->layer_count == 0)
+    if (options->component_count == 0)
         return json_string(beside);
-    return report->lobe_count > 0 ? json_sprintf("layers beside %s", beside) : json_string("layers");
+    return report->lobe_count > 0 ? json_sprintf("components beside %s", beside) : json_string("components");
 }
 
 static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
@@ -117,8 +117,8 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
     }
     if (options->budget_bytes > 0)
         weft_json_put(&fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
-    if (options->layer_count > 0)
-        weft_json_put(&fit, "layers", describe_layers(options, &report->layers));
+    if (options->component_count > 0)
+        weft_json_put(&fit, "components", describe_components(options, &report->components));
     if (report->table_components > 0)
         weft_json_put(&fit, "table_components", json_integer(report->table_components));
     if (report->model == WEFT_COMPRESS_SPARSE) {

@@ -1,8 +1,8 @@
 #include "registration/calibrate.h"
 
 #include "base/numeric/cholesky.h"
-#include "registration/photographs.h"
 #include "registration/pose/markers.h"
+#include "registration/viewpoint_photographs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -57,13 +57,14 @@ static void call_witnesses(court *c)
 
 static weft_code read_average(court *c, witness *w, weft_error *error)
 {
-    weft_photographs photographs;
-    WEFT_TRY(weft_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error));
+    weft_viewpoint_photographs photographs;
+    WEFT_TRY(
+        weft_viewpoint_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error));
     if (photographs.usable_count > 0) {
         w->average = photographs.average;
         photographs.average = NULL;
     }
-    weft_photographs_free(&photographs);
+    weft_viewpoint_photographs_free(&photographs);
     return WEFT_OK;
 }
 
@@ -170,20 +171,21 @@ static weft_code find_bend(court *c, weft_error *error)
 static weft_code add_vignetting(const court *c, const witness *w, const weft_reference_pixels *reference,
                                 weft_vignetting_sums *sums, weft_error *error)
 {
-    weft_photographs photographs;
+    weft_viewpoint_photographs photographs;
     uint16_t *scratch = malloc(weft_photograph_sample_count(c->session) * sizeof *scratch);
     if (!scratch)
         return weft_fail_memory(error, "a photograph", weft_photograph_sample_count(c->session) * sizeof *scratch);
     weft_code code =
-        weft_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error);
+        weft_viewpoint_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error);
     for (int i = 0; code == WEFT_OK && i < w->some.count; i++) {
-        const uint16_t *samples = photographs.usable[i] ? weft_photographs_samples(&photographs, i, scratch) : NULL;
+        const uint16_t *samples =
+            photographs.usable[i] ? weft_viewpoint_photographs_samples(&photographs, i, scratch) : NULL;
         weft_exposure exposure = weft_exposure_of(c->session, w->shot[i]);
         if (samples)
             weft_vignetting_add(c->sight, &c->session->target, reference, samples, &exposure, sums);
     }
     if (code == WEFT_OK)
-        weft_photographs_free(&photographs);
+        weft_viewpoint_photographs_free(&photographs);
     free(scratch);
     return code;
 }

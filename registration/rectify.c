@@ -10,7 +10,7 @@
 /* One stay at work. */
 typedef struct job {
     const weft_rectifier *rectifier;
-    const weft_photographs *photographs;
+    const weft_viewpoint_photographs *photographs;
     const weft_white *estimated;
     weft_resampler resampler;
     weft_reference_pixels reference;
@@ -150,7 +150,7 @@ static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, wef
     *done = false;
     if (!j->photographs->usable[index] || white->patches > 0) /* the latter is in the dataset already */
         return WEFT_OK;
-    const uint16_t *samples = weft_photographs_samples(j->photographs, index, b->samples);
+    const uint16_t *samples = weft_viewpoint_photographs_samples(j->photographs, index, b->samples);
     if (!samples)
         return WEFT_OK;
     *white = weft_white_measure(j->rectifier->sight, &session->target, &j->reference, samples, &exposure);
@@ -224,7 +224,7 @@ static bool is_most_frontal(const weft_survey *survey, int stay)
     return true;
 }
 
-weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
+weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_viewpoint_photographs *photographs,
                             const weft_white *estimated, float *shown, weft_error *error)
 {
     weft_registration *registration = rectifier->registration;

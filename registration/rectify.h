@@ -3,7 +3,7 @@
 #define WEFT_REGISTRATION_RECTIFY_H
 
 #include "btf/dataset/dataset.h"
-#include "registration/photographs.h"
+#include "registration/viewpoint_photographs.h"
 
 /* What the stays of a registration share. */
 typedef struct weft_rectifier {
@@ -19,7 +19,7 @@ typedef struct weft_rectifier {
  * them into the dataset. Photographs without a measured white level are left out unless `estimated` gives them one.
  * `shown` [height][width][3] (may be NULL) receives the one under the highest light, as reflectance times cosine; it is
  * left as it is where no photograph is put. Errors: WEFT_SYSTEM. Uses OpenMP. */
-weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
+weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_viewpoint_photographs *photographs,
                             const weft_white *estimated, float *shown, weft_error *error);
 
 #endif

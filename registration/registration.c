@@ -122,7 +122,7 @@ static weft_code describe_dataset(const weft_session *sessions, int count, const
     return WEFT_OK;
 }
 
-static weft_code find_and_rectify(work *w, int stay, const weft_photographs *photographs, weft_error *error)
+static weft_code find_and_rectify(work *w, int stay, const weft_viewpoint_photographs *photographs, weft_error *error)
 {
     const weft_session *session = w->rectifier.session;
     weft_registration *registration = w->rectifier.registration;
@@ -143,9 +143,9 @@ static weft_code register_stay(work *w, int stay, weft_error *error)
 {
     weft_registration *registration = w->rectifier.registration;
     weft_view_pose *pose = &registration->pose[stay];
-    weft_photographs photographs;
-    WEFT_TRY(weft_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
-                                   registration->fault, &photographs, error));
+    weft_viewpoint_photographs photographs;
+    WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
+                                             registration->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
         code = find_and_rectify(w, stay, &photographs, error);
@@ -157,7 +157,7 @@ static weft_code register_stay(work *w, int stay, weft_error *error)
         code = weft_report_write_pictures(registration, &w->sight, stay, &pictures, error);
     }
     w->done += photographs.count;
-    weft_photographs_free(&photographs);
+    weft_viewpoint_photographs_free(&photographs);
     return code;
 }
 
@@ -166,11 +166,11 @@ static weft_code rectify_again(work *w, int stay, const weft_white *estimated, w
 {
     weft_registration *registration = w->rectifier.registration;
     bool unseen = w->shown && registration->used[stay] == 0;
-    weft_photographs photographs;
-    WEFT_TRY(weft_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
-                                   registration->fault, &photographs, error));
+    weft_viewpoint_photographs photographs;
+    WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
+                                             registration->fault, &photographs, error));
     weft_code code = weft_rectify_stay(&w->rectifier, stay, &photographs, estimated, unseen ? w->shown : NULL, error);
-    weft_photographs_free(&photographs);
+    weft_viewpoint_photographs_free(&photographs);
     if (code != WEFT_OK || !unseen || registration->used[stay] == 0)
         return code;
     weft_report_pictures pictures = {NULL, NULL, w->shown};

@@ -10,7 +10,7 @@ format() {
 }
 
 includes() {
-    scripts/check-includes.sh
+    scripts/check_includes.py
 }
 
 docs() {

@@ -18,7 +18,7 @@ done
 convert off.png on.png -bordercolor white -border 3 +append -colors 200 "$out"
 
 "$weft" simulate "$stitch" --plane top -o coarse.btf.h5 --size 20x16 --noise 2 --directions ubo81
-"$weft" compress coarse.btf.h5 -o coarse.weft --layers 32
+"$weft" compress coarse.btf.h5 -o coarse.weft --components 32
 for relief in off on; do
     "$weft" render coarse.weft --relief "$relief" --filter exact --mesh plane --repeat 3.2 --camera -90,30,1.6 --light 45,120 --size 640x360 -o "layers-$relief.png"
 done
@@ -28,7 +28,7 @@ convert layers-off.png layers-on.png -bordercolor white -border 3 +append -color
 "$weft" relief still.btf.h5 --move on -o moved.btf.h5
 for name in still moved; do
     "$weft" compress "$name.btf.h5" -o "$name-2.weft" --lobes 2
-    "$weft" compress "$name.btf.h5" -o "$name-32.weft" --layers 32
+    "$weft" compress "$name.btf.h5" -o "$name-32.weft" --components 32
     for model in 2 32; do
         "$weft" render "$name-$model.weft" --filter exact --mesh plane --repeat 3.2 --camera -90,30,1.6 --light 45,120 --size 480x270 -o "$name-$model.png"
     done

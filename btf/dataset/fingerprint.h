@@ -21,7 +21,7 @@ weft_code weft_dataset_fingerprint_take(weft_dataset *dataset, weft_dataset_fing
 
 /* Compares with {"dataset": {"layout": "HEX", "samples": "HEX"}} in the metadata of a material, which need not have it.
  * `warning` becomes a sentence where they differ, or where the metadata say that the material was cut to tile ("tile",
- * study/blend/blend.h); else "". Errors: as above. */
+ * edit/blend/blend.h); else "". Errors: as above. */
 weft_code weft_dataset_fingerprint_compare(weft_dataset *dataset, const char *metadata, char warning[WEFT_MESSAGE_SIZE],
                                            weft_error *error);
 

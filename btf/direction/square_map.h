@@ -1,6 +1,6 @@
 /* Hemispheres on a square: places of directions, and bilinear interpolation between the nodes of the square. A GPU does
  * the same by hardware, where barycentric interpolation between scattered directions takes many reads. All functions
- * are pure. GLSL twin: reflectance/layers/layers.glsl. */
+ * are pure. GLSL twin: reflectance/components/components.glsl. */
 #ifndef WEFT_BTF_DIRECTION_SQUARE_MAP_H
 #define WEFT_BTF_DIRECTION_SQUARE_MAP_H
 

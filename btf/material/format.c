@@ -42,12 +42,12 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
     case WEFT_SECTION_MODL:
         return material->has_models ? material->level_count : 0;
     case WEFT_SECTION_LAYR:
-        return material->has_layers;
+        return material->has_components;
     case WEFT_SECTION_LCOE:
     case WEFT_SECTION_CEIL:
-        return material->has_layers ? material->level_count : 0;
+        return material->has_components ? material->level_count : 0;
     case WEFT_SECTION_FLOR:
-        return material->has_layers && material->has_floors ? material->level_count : 0;
+        return material->has_components && material->has_floors ? material->level_count : 0;
     case WEFT_SECTION_HGHT:
         return material->has_heights;
     case WEFT_SECTION_SEEN:
@@ -82,9 +82,11 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
     case WEFT_SECTION_ERRO:
         return WEFT_FORMAT_ERRORS * sizeof(double);
     case WEFT_SECTION_LAYR:
-        return material->layers ? weft_layers_header_size(material->layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES) : 0;
+        return material->components
+                   ? weft_components_header_size(material->components, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES)
+                   : 0;
     case WEFT_SECTION_LCOE:
-        return material->layers ? texels * (uint64_t)material->layers->layer_count : 0;
+        return material->components ? texels * (uint64_t)material->components->component_count : 0;
     case WEFT_SECTION_HGHT:
         return material->heights ? weft_material_heights_size(material->heights) : 0;
     case WEFT_SECTION_SEEN:
@@ -115,11 +117,11 @@ void *weft_section_texels(const weft_material *material, weft_section_kind kind,
     case WEFT_SECTION_MODL:
         return at->model;
     case WEFT_SECTION_LCOE:
-        return material->layers->level[level].coefficient;
+        return material->components->level[level].coefficient;
     case WEFT_SECTION_CEIL:
-        return material->layers->level[level].ceiling;
+        return material->components->level[level].ceiling;
     case WEFT_SECTION_FLOR:
-        return material->layers->level[level].floor;
+        return material->components->level[level].floor;
     default:
         return NULL;
     }
@@ -163,7 +165,7 @@ static const char *fault_of_errors(const double *value, size_t count)
 static const char *fault_of_coefficients(const int8_t *coefficient, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        if (coefficient[i] < -WEFT_LAYERS_LARGEST_CODE)
+        if (coefficient[i] < -WEFT_COMPONENTS_LARGEST_CODE)
             return "holds a coefficient of -128";
     }
     return NULL;

@@ -71,7 +71,7 @@ weft_section_kind weft_section_kind_of(const char type[5]);
 int weft_section_levels(const weft_material *material, weft_section_kind kind);
 
 /* Decoded bytes of a section, from the counts and level sizes only; 0 for META, TPCA and SPCA, whose sizes are free,
- * and for LAYR, LCOE, HGHT and SEEN while the layers, heights or maps are not read. Pure. */
+ * and for LAYR, LCOE, HGHT and SEEN while the components, heights or maps are not read. Pure. */
 uint64_t weft_section_size(const weft_material *material, weft_section_kind kind, int level);
 
 /* The texels of FRAM, RHO, LOBE, TABL, STAB, MODL, LCOE, CEIL and FLOR in memory; NULL for the other kinds. */

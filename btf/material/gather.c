@@ -121,17 +121,17 @@ static weft_code gather_level(const weft_material *from, const weft_texel_mix *m
     return code;
 }
 
-/* ---- Layers ---- */
+/* ---- Components ---- */
 
-static const int8_t *coefficients(const weft_layers_level *level, int group, int x, int y)
+static const int8_t *coefficients(const weft_components_level *level, int group, int x, int y)
 {
     size_t texel = ((size_t)group * (size_t)level->height + (size_t)y) * (size_t)level->width + (size_t)x;
-    return level->coefficient + WEFT_LAYERS_GROUP * texel;
+    return level->coefficient + WEFT_COMPONENTS_GROUP * texel;
 }
 
 /* The sum over the texels of level 0 that a texel of level k covers, of one group. */
-static double add_covered(const weft_layers_level *from, const weft_layers_level *to, const weft_texel_mix *mix,
-                          int level, int group, int x, int y, double sum[WEFT_LAYERS_GROUP])
+static double add_covered(const weft_components_level *from, const weft_components_level *to, const weft_texel_mix *mix,
+                          int level, int group, int x, int y, double sum[WEFT_COMPONENTS_GROUP])
 {
     double covered = 0;
     for (int j = y << level; j < (y + 1) << level && j < to->height; j++)
@@ -141,7 +141,7 @@ static double add_covered(const weft_layers_level *from, const weft_layers_level
                 if (!(at->part[p].weight > 0))
                     continue;
                 const int8_t *c = coefficients(from, group, at->part[p].x, at->part[p].y);
-                for (int k = 0; k < WEFT_LAYERS_GROUP; k++)
+                for (int k = 0; k < WEFT_COMPONENTS_GROUP; k++)
                     sum[k] += (double)at->part[p].weight * c[k];
             }
             covered++;
@@ -149,17 +149,17 @@ static double add_covered(const weft_layers_level *from, const weft_layers_level
     return covered;
 }
 
-static void mix_level(const weft_layers *from, const weft_texel_mix *mix, int k, weft_layers *to)
+static void mix_level(const weft_components *from, const weft_texel_mix *mix, int k, weft_components *to)
 {
-    weft_layers_level *level = &to->level[k];
+    weft_components_level *level = &to->level[k];
 #pragma omp parallel for collapse(2)
-    for (int group = 0; group < to->layer_count / WEFT_LAYERS_GROUP; group++)
+    for (int group = 0; group < to->component_count / WEFT_COMPONENTS_GROUP; group++)
         for (int y = 0; y < level->height; y++)
             for (int x = 0; x < level->width; x++) {
-                double sum[WEFT_LAYERS_GROUP] = {0};
+                double sum[WEFT_COMPONENTS_GROUP] = {0};
                 double covered = add_covered(&from->level[0], &to->level[0], mix, k, group, x, y, sum);
                 int8_t *code = (int8_t *)coefficients(level, group, x, y);
-                for (int c = 0; c < WEFT_LAYERS_GROUP; c++)
+                for (int c = 0; c < WEFT_COMPONENTS_GROUP; c++)
                     code[c] = (int8_t)lround(sum[c] / covered);
             }
 }
@@ -169,13 +169,13 @@ static int squares_of(int side)
     return (side + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
 }
 
-static size_t square_at(const weft_layers_level *level, int x, int y)
+static size_t square_at(const weft_components_level *level, int x, int y)
 {
     return (size_t)(y / WEFT_CEILING_SIDE) * (size_t)squares_of(level->width) + (size_t)(x / WEFT_CEILING_SIDE);
 }
 
 /* The square of `from` is under that of `to`. */
-static void widen_bounds(const weft_layers_level *from, size_t square, weft_layers_level *to, size_t mixed)
+static void widen_bounds(const weft_components_level *from, size_t square, weft_components_level *to, size_t mixed)
 {
     if (to->ceiling[mixed] < from->ceiling[square])
         to->ceiling[mixed] = from->ceiling[square];
@@ -185,10 +185,10 @@ static void widen_bounds(const weft_layers_level *from, size_t square, weft_laye
 }
 
 /* Of each level from level 0: a square of level k lies over 2^k x 2^k of those of level 0 at most. */
-static void mix_bounds(const weft_layers *from, const weft_texel_mix *mix, int k, weft_layers *to)
+static void mix_bounds(const weft_components *from, const weft_texel_mix *mix, int k, weft_components *to)
 {
     int width = to->level[0].width, height = to->level[0].height;
-    weft_layers_level *level = &to->level[k];
+    weft_components_level *level = &to->level[k];
     memset(level->floor, UINT8_MAX, 3 * weft_ceiling_count(level->width, level->height));
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -200,9 +200,9 @@ static void mix_bounds(const weft_layers *from, const weft_texel_mix *mix, int k
         }
 }
 
-static void copy_shared(const weft_layers *from, weft_layers *to)
+static void copy_shared(const weft_components *from, weft_components *to)
 {
-    size_t views = (size_t)from->view_count, images = (size_t)from->image_count, count = (size_t)from->layer_count;
+    size_t views = (size_t)from->view_count, images = (size_t)from->image_count, count = (size_t)from->component_count;
     memcpy(to->view, from->view, 3 * views * sizeof *from->view);
     memcpy(to->light, from->light, 3 * images * sizeof *from->light);
     memcpy(to->first, from->first, (views + 1) * sizeof *from->first);
@@ -210,13 +210,15 @@ static void copy_shared(const weft_layers *from, weft_layers *to)
     memcpy(to->value, from->value, 3 * images * count * sizeof *from->value);
 }
 
-static weft_code gather_layers(const weft_layers *from, const weft_texel_mix *mix, weft_material *to, weft_error *error)
+static weft_code gather_components(const weft_components *from, const weft_texel_mix *mix, weft_material *to,
+                                   weft_error *error)
 {
-    WEFT_TRY(weft_layers_create(from, to->level[0].width, to->level[0].height, to->level_count, &to->layers, error));
-    copy_shared(from, to->layers);
+    WEFT_TRY(
+        weft_components_create(from, to->level[0].width, to->level[0].height, to->level_count, &to->components, error));
+    copy_shared(from, to->components);
     for (int k = 0; k < to->level_count; k++) {
-        mix_level(from, mix, k, to->layers);
-        mix_bounds(from, mix, k, to->layers);
+        mix_level(from, mix, k, to->components);
+        mix_bounds(from, mix, k, to->components);
     }
     return WEFT_OK;
 }
@@ -285,7 +287,7 @@ static weft_code allocate_like(const weft_material *from, int width, int height,
     *to = (weft_material){.has_models = from->has_models,
                           .has_table_bases = from->has_table_bases,
                           .has_opacity = from->has_opacity,
-                          .has_layers = from->has_layers,
+                          .has_components = from->has_components,
                           .has_floors = from->has_floors,
                           .texel_pitch_mm = from->texel_pitch_mm};
     WEFT_TRY(weft_material_set_shape(to, width, height, from->level_count > 1 ? 0 : 1, from->lobe_count,
@@ -316,8 +318,8 @@ weft_code weft_material_gather(const weft_material *from, int width, int height,
     weft_code code = describe_like(from, result, error);
     for (int k = 0; k < result->level_count && code == WEFT_OK; k++)
         code = gather_level(from, mix, k, result, error);
-    if (code == WEFT_OK && from->layers)
-        code = gather_layers(from->layers, mix, result, error);
+    if (code == WEFT_OK && from->components)
+        code = gather_components(from->components, mix, result, error);
     if (code == WEFT_OK && from->heights)
         code = gather_heights(from, mix, result, error);
     if (code != WEFT_OK)

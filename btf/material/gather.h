@@ -16,9 +16,9 @@ typedef struct weft_texel_mix {
 
 /* Makes a material of width x height texels: texel (x, y) of level 0 is mix [height][width] of `from`.
  *
- * - Layers are linear: they are mixed by the weights, and mip levels are the means of what they cover. A ceiling is the
- *   largest of those mixed under it, a floor the smallest.
- * - Heights move with their texels, and are mixed as layers are.
+ * - Components are linear: they are mixed by the weights, and mip levels are the means of what they cover. A ceiling is
+ * the largest of those mixed under it, a floor the smallest.
+ * - Heights move with their texels, and are mixed as components are.
  * - All else is no linear code: a texel is the heaviest part alone. One of level k is moved as far as the texel of
  * level 0 at its centre is, to a whole texel, so that a level that was fitted stays fitted.
  *

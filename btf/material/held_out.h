@@ -24,8 +24,8 @@ typedef struct weft_hold_out_error {
     weft_error_summary view, light, both; /* of those whose view alone, whose light alone, and both of whose were */
 } weft_hold_out_error;
 
-/* Whether layers are to be seen through the heights of the dataset: relative RMSE over all samples of what was held out
- * that can be predicted through them, means over the splits. */
+/* Whether components are to be seen through the heights of the dataset: relative RMSE over all samples of what was held
+ * out that can be predicted through them, means over the splits. */
 typedef struct weft_hold_out_heights {
     bool asked, used;
     double with, without;

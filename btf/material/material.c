@@ -161,8 +161,8 @@ void weft_material_drop_finest(weft_material *material)
     free_level(&material->level[0]);
     memmove(material->level, material->level + 1, (size_t)--material->level_count * sizeof *material->level);
     material->texel_pitch_mm *= 2;
-    if (material->layers)
-        weft_layers_drop_finest(material->layers);
+    if (material->components)
+        weft_components_drop_finest(material->components);
     if (material->heights && --material->heights->level_count == 0)
         weft_material_take_heights(material, NULL);
     if (material->seen)
@@ -176,15 +176,15 @@ void weft_material_drop_coarsest(weft_material *material)
     weft_material_level *last = &material->level[--material->level_count];
     free_level(last);
     *last = (weft_material_level){0};
-    if (material->layers)
-        weft_layers_drop_coarsest(material->layers);
+    if (material->components)
+        weft_components_drop_coarsest(material->components);
 }
 
 void weft_material_free(weft_material *material)
 {
     for (int k = 0; k < material->level_count; k++)
         free_level(&material->level[k]);
-    weft_layers_free(material->layers);
+    weft_components_free(material->components);
     weft_material_heights_free(material->heights);
     weft_seen_free(material->seen);
     free(material->view);
@@ -195,9 +195,9 @@ void weft_material_free(weft_material *material)
 
 const char *weft_material_errors_of(const weft_material *material)
 {
-    if (!material->layers)
+    if (!material->components)
         return NULL;
-    return material->lobe_count > 0 ? "lobes beside the layers" : "diffuse term beside the layers";
+    return material->lobe_count > 0 ? "lobes beside the components" : "diffuse term beside the components";
 }
 
 bool weft_material_has_holes(const weft_material *material)

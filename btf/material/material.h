@@ -11,8 +11,8 @@
 #include "base/numeric/error_summary.h"
 #include "base/status.h"
 #include "btf/direction/frame.h"
+#include "btf/material/components.h"
 #include "btf/material/heights.h"
-#include "btf/material/layers.h"
 #include "btf/material/seen.h"
 #include "btf/material/table_basis.h"
 
@@ -52,16 +52,16 @@ typedef struct weft_material {
     bool has_models;       /* every level says which model each texel has */
     bool has_table_bases;  /* tables are stored by components, and so */
     bool has_opacity;      /* are opacities by themselves, if any is below 1 */
-    bool has_layers;       /* `layers` is, or will be, set */
-    bool has_floors;       /* its layers have floors that are not all 0 */
+    bool has_components;   /* `components` is, or will be, set */
+    bool has_floors;       /* its components have floors that are not all 0 */
     bool has_heights;      /* and so are `heights` */
     bool has_seen;         /* and so is `seen` */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
-    weft_layers *layers;            /* the same reflectance a second time, nearer to the photographs; NULL without */
-    weft_material_heights *heights; /* that its layers are seen through; NULL without */
+    weft_components *components;    /* the same reflectance a second time, nearer to the photographs; NULL without */
+    weft_material_heights *heights; /* that its components are seen through; NULL without */
     weft_seen *seen;                /* what of it the scene reaches that it was pruned for; NULL without */
     char *metadata;                 /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
@@ -72,11 +72,11 @@ weft_code weft_material_create(int width, int height, int lobe_count, int view_c
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
-/* Takes the finest level away, of layers, heights and what is seen, too: the same material with a quarter of the
+/* Takes the finest level away, of components, heights and what is seen, too: the same material with a quarter of the
  * texels. Does nothing where there is but one. */
 void weft_material_drop_finest(weft_material *material);
 
-/* Takes the coarsest level away, of layers, too. Does nothing where there is but one. */
+/* Takes the coarsest level away, of components, too. Does nothing where there is but one. */
 void weft_material_drop_coarsest(weft_material *material);
 
 /* Puts heights, which are taken, into the place of those that it has; NULL: none. */
@@ -88,8 +88,8 @@ void weft_material_take_seen(weft_material *material, weft_seen *seen);
 /* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
 weft_code weft_material_add_models(weft_material *material, weft_error *error);
 
-/* Whose errors its levels have, where that is not all of it: "lobes beside the layers" or "diffuse term beside the
- * layers"; NULL without layers. Pure. */
+/* Whose errors its levels have, where that is not all of it: "lobes beside the components" or "diffuse term beside the
+ * components"; NULL without components. Pure. */
 const char *weft_material_errors_of(const weft_material *material);
 
 /* Whether any texel has an opacity below 1 in any view. Pure. */

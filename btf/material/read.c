@@ -126,34 +126,35 @@ static weft_code read_opacity(const weft_file_image *file, const weft_section *s
     return code;
 }
 
-static weft_layers_coding coding_of(const weft_section *section)
+static weft_components_coding coding_of(const weft_section *section)
 {
-    return section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_LAYERS_BY_DIFFERENCES
-           : section->codec == WEFT_CODEC_WEIGHTED  ? WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES
-                                                    : WEFT_LAYERS_AS_THEY_ARE;
+    return section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_COMPONENTS_BY_DIFFERENCES
+           : section->codec == WEFT_CODEC_WEIGHTED  ? WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES
+                                                    : WEFT_COMPONENTS_AS_THEY_ARE;
 }
 
-/* Before LCOE, whose sizes show that the file is as large as the layers it claims. */
-static weft_code read_layers(const weft_file_image *file, const weft_section *section, weft_material *material,
-                             weft_error *error)
+/* Before LCOE, whose sizes show that the file is as large as the components it claims. */
+static weft_code read_components(const weft_file_image *file, const weft_section *section, weft_material *material,
+                                 weft_error *error)
 {
     const weft_material_level *level = material->level;
     uint8_t *bytes = malloc(section->decoded_size + 1);
     if (!bytes)
-        return weft_fail_memory(error, "layers", section->decoded_size + 1);
+        return weft_fail_memory(error, "components", section->decoded_size + 1);
     weft_code code = decode(file, section, bytes, error);
     const char *fault = NULL;
-    uint32_t layers = 0;
+    uint32_t components = 0;
     if (code == WEFT_OK && section->decoded_size >= 8)
-        memcpy(&layers, bytes + 4, sizeof layers);
+        memcpy(&components, bytes + 4, sizeof components);
     for (int k = 0; k < material->level_count && code == WEFT_OK; k++) {
         if (weft_file_section(file, WEFT_SECTION_LCOE, k)->decoded_size !=
-            (uint64_t)layers * (uint64_t)level[k].width * (uint64_t)level[k].height)
-            code = weft_fail_section(file, section, error, "its layers are not those of the coefficients");
+            (uint64_t)components * (uint64_t)level[k].width * (uint64_t)level[k].height)
+            code = weft_fail_section(file, section, error, "its components are not those of the coefficients");
     }
     if (code == WEFT_OK)
-        code = weft_layers_header_read(bytes, section->decoded_size, coding_of(section), level[0].width,
-                                       level[0].height, material->level_count, &material->layers, &fault, error);
+        code =
+            weft_components_header_read(bytes, section->decoded_size, coding_of(section), level[0].width,
+                                        level[0].height, material->level_count, &material->components, &fault, error);
     free(bytes);
     return fault ? weft_fail_section(file, section, error, fault) : code;
 }
@@ -205,7 +206,7 @@ static weft_code read_section(const weft_file_image *file, weft_material *materi
     case WEFT_SECTION_ALPH:
         return read_opacity(file, section, material, k, error);
     case WEFT_SECTION_LAYR:
-        return read_layers(file, section, material, error);
+        return read_components(file, section, material, error);
     case WEFT_SECTION_HGHT:
         return read_heights(file, section, material, error);
     case WEFT_SECTION_SEEN:

@@ -1,4 +1,4 @@
-/* What of a material the pictures of a scene reach: a material that was pruned for a scene (study/prune) holds only
+/* What of a material the pictures of a scene reach: a material that was pruned for a scene (edit/prune) holds only
  * that, and a player can tell where it is asked for more. Every map is a square of cells: of directions by their place
  * (btf/direction/square_map.h), of the material by its texture coordinates, row 0 at the top. */
 #ifndef WEFT_BTF_MATERIAL_SEEN_H

@@ -126,9 +126,9 @@ static weft_code check_codec(const weft_file_image *file, const weft_section *se
         return section->decoded_size == section->stored_size
                    ? WEFT_OK
                    : weft_fail_section(file, section, error, "stored and decoded size differ without a codec");
-    bool is_layers = weft_section_kind_of(section->type) == WEFT_SECTION_LAYR;
+    bool is_components = weft_section_kind_of(section->type) == WEFT_SECTION_LAYR;
     bool has_differences = section->codec == WEFT_CODEC_DIFFERENCES || section->codec == WEFT_CODEC_WEIGHTED;
-    if (section->codec != WEFT_CODEC_ZSTD && !(has_differences && is_layers))
+    if (section->codec != WEFT_CODEC_ZSTD && !(has_differences && is_components))
         return weft_fail_section(file, section, error, "unknown codec");
     /* stored_size is at most the size of the file, so the product cannot overflow. */
     if (section->decoded_size > section->stored_size * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)
@@ -150,7 +150,7 @@ static weft_code note_section(weft_file_image *file, int index, weft_material *m
     if (kind == WEFT_SECTION_KINDS)
         return WEFT_OK;
     material->has_models = material->has_models || kind == WEFT_SECTION_MODL;
-    material->has_layers = material->has_layers || kind == WEFT_SECTION_LAYR;
+    material->has_components = material->has_components || kind == WEFT_SECTION_LAYR;
     material->has_floors = material->has_floors || kind == WEFT_SECTION_FLOR;
     material->has_heights = material->has_heights || kind == WEFT_SECTION_HGHT;
     material->has_seen = material->has_seen || kind == WEFT_SECTION_SEEN;
@@ -198,7 +198,7 @@ static weft_code check_coefficients(const weft_file_image *file, const weft_mate
 {
     const weft_section *section = weft_file_section(file, WEFT_SECTION_LCOE, k);
     uint64_t texels = texels_of(material, k);
-    if (section->decoded_size % texels != 0 || section->decoded_size / texels > WEFT_LAYERS_MAX)
+    if (section->decoded_size % texels != 0 || section->decoded_size / texels > WEFT_COMPONENTS_MAX)
         return weft_fail_section(file, section, error, "its size does not fit the material");
     return WEFT_OK;
 }

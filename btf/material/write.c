@@ -197,33 +197,33 @@ static size_t packed_size(const file_image *file, const void *bytes, size_t size
 /* The smaller one. Copies, as of images that a scene never reaches, are smaller as they are. They are compared at the
  * lower level, where a try of 1.3 MB takes 0.03 s: at the level that is written it takes 0.6 s, which would triple the
  * time that a price list or a pruning spends on each file. Only near a tie may that choose the larger one. */
-static weft_layers_coding choose_coding(const file_image *file, const weft_layers *layers, uint8_t *bytes)
+static weft_components_coding choose_coding(const file_image *file, const weft_components *components, uint8_t *bytes)
 {
     size_t packed[] = {0, 0};
-    const weft_layers_coding coding[] = {WEFT_LAYERS_AS_THEY_ARE, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES};
-    if (!weft_layers_have_differences(layers))
-        return WEFT_LAYERS_AS_THEY_ARE;
+    const weft_components_coding coding[] = {WEFT_COMPONENTS_AS_THEY_ARE, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES};
+    if (!weft_components_have_differences(components))
+        return WEFT_COMPONENTS_AS_THEY_ARE;
     for (int i = 0; i < 2; i++) {
-        weft_layers_header_write(layers, coding[i], bytes);
-        packed[i] = packed_size(file, bytes, weft_layers_header_size(layers, coding[i]));
+        weft_components_header_write(components, coding[i], bytes);
+        packed[i] = packed_size(file, bytes, weft_components_header_size(components, coding[i]));
     }
     return coding[packed[1] < packed[0]];
 }
 
-static weft_code add_layers(file_image *file, const weft_material *material, weft_error *error)
+static weft_code add_components(file_image *file, const weft_material *material, weft_error *error)
 {
-    size_t most = weft_layers_header_size(material->layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES);
+    size_t most = weft_components_header_size(material->components, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES);
     uint8_t *bytes = malloc(most);
     if (!bytes)
-        return weft_fail_memory(error, "layers", most);
-    weft_layers_coding coding = choose_coding(file, material->layers, bytes);
-    weft_layers_header_write(material->layers, coding, bytes);
+        return weft_fail_memory(error, "components", most);
+    weft_components_coding coding = choose_coding(file, material->components, bytes);
+    weft_components_header_write(material->components, coding, bytes);
     int level = file->level;
-    file->level = weft_layers_have_differences(material->layers) ? rounded_level : level;
-    weft_code code =
-        add_section(file, WEFT_SECTION_LAYR, 0, bytes, weft_layers_header_size(material->layers, coding), error);
+    file->level = weft_components_have_differences(material->components) ? rounded_level : level;
+    weft_code code = add_section(file, WEFT_SECTION_LAYR, 0, bytes,
+                                 weft_components_header_size(material->components, coding), error);
     file->level = level;
-    if (code == WEFT_OK && coding == WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES)
+    if (code == WEFT_OK && coding == WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES)
         file->section[file->section_count - 1].codec = WEFT_CODEC_WEIGHTED;
     free(bytes);
     return code;
@@ -276,7 +276,7 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
     case WEFT_SECTION_ALPH:
         return add_opacity(file, material, k, error);
     case WEFT_SECTION_LAYR:
-        return add_layers(file, material, error);
+        return add_components(file, material, error);
     case WEFT_SECTION_HGHT:
         return add_heights(file, material, error);
     case WEFT_SECTION_SEEN:

@@ -5,7 +5,7 @@
 weft_compress_options weft_compress_default_options(void)
 {
     return (weft_compress_options){.lobe_count = 2,
-                                   .layer_count = WEFT_LAYERS_AUTOMATIC,
+                                   .component_count = WEFT_COMPONENTS_AUTOMATIC,
                                    .table = true,
                                    .levels = true,
                                    .heights = true,
@@ -39,8 +39,9 @@ weft_code weft_compress_options_check(const weft_compress_options *options, cons
                          "components of tables are shared by all texels: no target error or budget for each of them");
     if (options->target_error > 0 && options->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "a target error and a budget exclude each other");
-    if (options->rounded && options->layer_count == 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "only layers are rounded, and there are none: leave out --rounding");
+    if (options->rounded && options->component_count == 0)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "only components are rounded, and there are none: leave out --rounding");
     if (weft_compress_options_count_images(options, weft_dataset_get_layout(dataset)) == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "'%s': every image is held out", weft_dataset_path(dataset));
     return WEFT_OK;

@@ -25,15 +25,15 @@ typedef enum weft_frame_choice {
     WEFT_FRAMES_FITTED   /* the better of the two, or turned from there, where that helps */
 } weft_frame_choice;
 
-/* Layers instead of lobes, unless something is asked for that only lobes have (compress/compress.h). */
-enum { WEFT_LAYERS_AUTOMATIC = -1 };
+/* Components instead of lobes, unless something is asked for that only lobes have (compress/compress.h). */
+enum { WEFT_COMPONENTS_AUTOMATIC = -1 };
 
-/* What the maps of layers are over. */
-typedef enum weft_layer_maps_choice {
-    WEFT_LAYER_MAPS_CHOSEN, /* what predicts images better that are held out to choose */
-    WEFT_LAYER_MAPS_OF_LIGHT,
-    WEFT_LAYER_MAPS_OF_HALF_VECTOR
-} weft_layer_maps_choice;
+/* What the maps of components are over. */
+typedef enum weft_component_maps_choice {
+    WEFT_COMPONENT_MAPS_CHOSEN, /* what predicts images better that are held out to choose */
+    WEFT_COMPONENT_MAPS_OF_LIGHT,
+    WEFT_COMPONENT_MAPS_OF_HALF_VECTOR
+} weft_component_maps_choice;
 
 typedef struct weft_compress_options {
     int lobe_count;              /* at most; 0..3 */
@@ -46,13 +46,13 @@ typedef struct weft_compress_options {
     double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
     uint64_t added_bytes;  /* of a file in the budget: metadata that the caller adds to the material afterwards */
-    int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none; WEFT_LAYERS_AUTOMATIC */
-    weft_layer_maps_choice layer_maps;
-    bool finer;           /* as many layers again, which hold what rounding to 8 bits leaves of the coefficients of the
-                             first, which have 15 bits then: it tells what rounding costs. At most 32 layers */
-    bool rounded;         /* layers are rounded where what they leave hides it (btf/material/layer_rounding.h) */
-    bool heights;         /* layers are seen through those of the dataset, where it has some (`weft relief`) */
-    int table_components; /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
+    int component_count;   /* components beside the lobes: 4..64, a multiple of 4; 0: none; WEFT_COMPONENTS_AUTOMATIC */
+    weft_component_maps_choice component_maps;
+    bool finer;   /* as many components again, which hold what rounding to 8 bits leaves of the coefficients of the
+                     first, which have 15 bits then: it tells what rounding costs. At most 32 components */
+    bool rounded; /* components are rounded where what they leave hides it (btf/material/component_rounding.h) */
+    bool heights; /* components are seen through those of the dataset, where it has some (`weft relief`) */
+    int table_components;    /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
@@ -61,8 +61,8 @@ typedef struct weft_compress_options {
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* Automatic layers, or 2 lobes and table where there are none; levels, heights, fitted frames, N <= 8192, nothing held
- * out, a quarter of the memory, no checkpoint. */
+/* Automatic components, or 2 lobes and table where there are none; levels, heights, fitted frames, N <= 8192, nothing
+ * held out, a quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* Images that are not held out. Pure. */

@@ -59,7 +59,7 @@ double weft_texel_weighted_error(weft_texel_fitter *fitter)
     return sum;
 }
 
-/* Whether all channels are but a diffuse term, as beside layers: that is compared in one go. */
+/* Whether all channels are but a diffuse term, as beside components: that is compared in one go. */
 static bool is_flat(const weft_texel_fitter *fitter, float diffuse[WEFT_CHANNELS])
 {
     static const uint8_t one = 255;

@@ -282,7 +282,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
 }
 
 /* Fits the whole model, and the smaller ones that may serve better; the best stays. Returns whether that is not the
- * whole one. The diffuse term alone, as it lies beside layers, has no smaller model and no other start. */
+ * whole one. The diffuse term alone, as it lies beside components, has no smaller model and no other start. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
     if (whole->lobe_count == 0 && !whole->table && fitter->light_count == 0) {

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-enum { HURRIED_LAYERS = 16 };
+enum { HURRIED_COMPONENTS = 16 };
 
 static const double golden_ratio = 0.6180339887498949;
 
@@ -303,11 +303,11 @@ static weft_code check_scene(const weft_player *p, const weft_scene *scene, int 
     return WEFT_OK;
 }
 
-/* The first layers hold most of what is seen. */
-static weft_scene with_few_layers(const weft_scene *scene)
+/* The first components hold most of what is seen. */
+static weft_scene with_few_components(const weft_scene *scene)
 {
     weft_scene few = *scene;
-    few.layers = few.layers < HURRIED_LAYERS ? few.layers : HURRIED_LAYERS;
+    few.components = few.components < HURRIED_COMPONENTS ? few.components : HURRIED_COMPONENTS;
     return few;
 }
 
@@ -316,7 +316,7 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *asked, int width, i
 {
     static weft_code (*const draw[WEFT_LAYOUT_COUNT])(weft_player *, const weft_scene *, const weft_pane *, GLuint,
                                                       weft_error *) = {draw_panes, draw_wipe, draw_difference};
-    const weft_scene few = with_few_layers(asked), *scene = sampling.hurry ? &few : asked;
+    const weft_scene few = with_few_components(asked), *scene = sampling.hurry ? &few : asked;
     WEFT_TRY(check_scene(p, scene, width, height, error));
     GLint target;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);

@@ -6,14 +6,15 @@
 enum { HURRIED_LIGHTS = 2 };
 
 /* They take other texture units than lobes do. */
-static bool uses_layers(const weft_player *p, const weft_scene *scene)
+static bool uses_components(const weft_player *p, const weft_scene *scene)
 {
-    return scene->layers > 0 && p->material.layers.group_count > 0;
+    return scene->components > 0 && p->material.components.group_count > 0;
 }
 
 static int drawn_groups(const weft_player *p, const weft_scene *scene)
 {
-    int wanted = (scene->layers + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP, most = p->material.layers.group_count;
+    int wanted = (scene->components + WEFT_COMPONENTS_GROUP - 1) / WEFT_COMPONENTS_GROUP,
+        most = p->material.components.group_count;
     return wanted < most ? wanted : most;
 }
 
@@ -24,9 +25,9 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         weft_raw_texture_bind(&p->raw, program);
         break;
     case WEFT_MODE_COMPRESSED:
-        weft_material_texture_bind(&p->material, program, uses_layers(p, scene));
+        weft_material_texture_bind(&p->material, program, uses_components(p, scene));
         if (scene->show_extrapolation && p->material.seen.maps)
-            weft_seen_texture_bind(&p->material.seen, program, uses_layers(p, scene) ? 0 : 5);
+            weft_seen_texture_bind(&p->material.seen, program, uses_components(p, scene) ? 0 : 5);
         glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
                      (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
         weft_gl_set_float(program, "view_table_share", scene->view_table);
@@ -74,11 +75,11 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.light_table = p->material.light_table.count > 0;
         kind.fewer_bits = scene->table_bits < 8;
         kind.pruned = scene->show_extrapolation && p->material.seen.maps;
-        kind.layer_groups = uses_layers(p, scene) ? p->material.layers.group_count : 0;
+        kind.component_groups = uses_components(p, scene) ? p->material.components.group_count : 0;
         kind.drawn_groups = drawn_groups(p, scene);
-        kind.incidence_power = p->material.layers.incidence_power;
-        kind.opacity = kind.layer_groups > 0 && !p->material.opaque;
-        kind.relief = kind.layer_groups > 0 && scene->relief && p->material.relief.height;
+        kind.incidence_power = p->material.components.incidence_power;
+        kind.opacity = kind.component_groups > 0 && !p->material.opaque;
+        kind.relief = kind.component_groups > 0 && scene->relief && p->material.relief.height;
     }
     return kind;
 }
@@ -97,6 +98,6 @@ weft_program_kind weft_player_casting_kind(const weft_player *p, const weft_scen
     kind.chosen_lights = 0;
     kind.stochastic = is_soft;
     kind.relief = kind.relief && !is_soft;
-    kind.drawn_groups = kind.layer_groups > 0;
+    kind.drawn_groups = kind.component_groups > 0;
     return kind;
 }

@@ -308,7 +308,7 @@ bool weft_player_has_environment(const weft_player *p)
 
 int weft_player_layer_count(const weft_player *p)
 {
-    return WEFT_LAYERS_GROUP * p->material.layers.group_count;
+    return WEFT_COMPONENTS_GROUP * p->material.components.group_count;
 }
 
 void weft_player_material_parts(const weft_player *p, int *lobe_count, bool *view_table, bool *light_table)

@@ -60,7 +60,7 @@ size_t weft_player_bytes(const weft_player *player, weft_mode mode);
 
 /* How the samples of raw are kept: "half floats", ...; "" where there are none. */
 const char *weft_player_raw_format(const weft_player *player);
-/* Number of linear layers of the material; 0 without. */
+/* Number of components of the material; 0 without. */
 int weft_player_layer_count(const weft_player *player);
 /* What the material has: lobes, and whether T and S. */
 void weft_player_material_parts(const weft_player *player, int *lobe_count, bool *view_table, bool *light_table);
@@ -85,7 +85,7 @@ typedef struct weft_sampling {
     /* Neighbouring pixels of a frame of a mean are lit from other parts of the environment: a mean of few frames is
      * grain then, instead of a lean. One of many frames is smooth without. */
     bool neighbours_differ;
-    /* WEFT_FILTER_AUTO is then stochastic, of linear layers the first 16 are drawn, and of an environment two lights a
+    /* WEFT_FILTER_AUTO is then stochastic, of components the first 16 are drawn, and of an environment two lights a
      * pixel, by chance. */
     bool hurry;
 } weft_sampling;

@@ -14,7 +14,7 @@ static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
            a->one_light == b->one_light && a->chosen_lights == b->chosen_lights && a->casts == b->casts &&
            a->plot == b->plot && a->opacity == b->opacity && a->relief == b->relief && a->threads == b->threads &&
-           a->noise == b->noise && a->layer_groups == b->layer_groups && a->drawn_groups == b->drawn_groups &&
+           a->noise == b->noise && a->component_groups == b->component_groups && a->drawn_groups == b->drawn_groups &&
            a->incidence_power == b->incidence_power && a->lobe_count == b->lobe_count &&
            a->view_table == b->view_table && a->light_table == b->light_table && a->fewer_bits == b->fewer_bits &&
            a->pruned == b->pruned;
@@ -39,14 +39,14 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
         "ONE_LIGHT %s\n#define CHOSEN_LIGHTS %d\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
-        "#define LAYER_GROUPS %d\n#define DRAWN_GROUPS %d\n#define INCIDENCE_POWER %d\n#define RELIEF %s\n#define "
+        "#define COMPONENT_GROUPS %d\n#define DRAWN_GROUPS %d\n#define INCIDENCE_POWER %d\n#define RELIEF %s\n#define "
         "PRUNED "
         "%d\n",
         WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_KEY_PLACES, WEFT_LEVEL_COLOURS, light_count_of(kind),
         name_of(kind->one_light), kind->chosen_lights, name_of(kind->stochastic), name_of(kind->shadows), kind->plot,
         name_of(kind->opacity), kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table),
-        name_of(kind->fewer_bits), name_of(kind->noise), kind->layer_groups, kind->drawn_groups, kind->incidence_power,
-        name_of(kind->relief), kind->pruned);
+        name_of(kind->fewer_bits), name_of(kind->noise), kind->component_groups, kind->drawn_groups,
+        kind->incidence_power, name_of(kind->relief), kind->pruned);
 }
 
 /* Some drivers count a sampler as used that no pixel reads, and none draws where samplers of two types share a unit.
@@ -86,17 +86,17 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                       mesh,
                                       last,
                                       NULL};
-    const char *const layered[] = {constants,
-                                   weft_glsl_rotation,
-                                   weft_glsl_surface,
-                                   weft_glsl_directions,
-                                   weft_glsl_tables,
-                                   weft_glsl_layers,
-                                   weft_glsl_relief,
-                                   weft_glsl_layered,
-                                   mesh,
-                                   last,
-                                   NULL};
+    const char *const factorised[] = {constants,
+                                      weft_glsl_rotation,
+                                      weft_glsl_surface,
+                                      weft_glsl_directions,
+                                      weft_glsl_tables,
+                                      weft_glsl_components,
+                                      weft_glsl_relief,
+                                      weft_glsl_factorised,
+                                      mesh,
+                                      last,
+                                      NULL};
     const char *const analytic[] = {constants,
                                     weft_glsl_rotation,
                                     weft_glsl_surface,
@@ -113,7 +113,7 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                    weft_glsl_threads,
                                    weft_glsl_shade_frag,
                                    NULL};
-    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, kind->layer_groups > 0 ? layered : compressed,
+    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, kind->component_groups > 0 ? factorised : compressed,
                                                           kind->threads ? threads : analytic};
     WEFT_TRY(weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error));
     place_samplers(*program);

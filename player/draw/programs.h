@@ -14,14 +14,14 @@ typedef struct weft_program_kind {
     int chosen_lights; /* of the environment, by chance; 0: all of it */
     bool casts;        /* draws the shadow of cloth with holes */
     int plot;          /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
-    bool opacity;      /* raw and layers: some is below 1 */
-    bool relief;       /* raw and layers: through the heights */
+    bool opacity;      /* raw and components: some is below 1 */
+    bool relief;       /* raw and components: through the heights */
     bool threads;      /* analytic: microcylinders, else a weave */
     bool noise;        /* analytic: that of the weave */
     /* Of the compressed material: */
-    int layer_groups;    /* four layers each, in the place of lobes; 0: lobes */
-    int drawn_groups;    /* the first of them, which are evaluated */
-    int incidence_power; /* of the maps of the layers (player/texture/layer_texture.h) */
+    int component_groups; /* four components each, in the place of lobes; 0: lobes */
+    int drawn_groups;     /* the first of them, which are evaluated */
+    int incidence_power;  /* of the maps of the components (player/texture/component_texture.h) */
     int lobe_count;
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */

@@ -16,7 +16,7 @@ extern const char weft_glsl_rotation[];
 extern const char weft_glsl_surface[];
 extern const char weft_glsl_environment_frag[];
 extern const char weft_glsl_directions[];
-extern const char weft_glsl_tables[], weft_glsl_compressed[], weft_glsl_layered[];
+extern const char weft_glsl_tables[], weft_glsl_compressed[], weft_glsl_factorised[];
 extern const char weft_glsl_raw[];
 extern const char weft_glsl_analytic[], weft_glsl_threads[];
 extern const char weft_glsl_shade_frag[], weft_glsl_depth_frag[], weft_glsl_cast_frag[];
@@ -24,7 +24,7 @@ extern const char weft_glsl_geometry_frag[];
 
 /* From reflectance/. */
 extern const char weft_glsl_lafortune[];
-extern const char weft_glsl_layers[], weft_glsl_relief[];
+extern const char weft_glsl_components[], weft_glsl_relief[];
 extern const char weft_glsl_woven[];
 extern const char weft_glsl_weave[];
 extern const char weft_glsl_microcylinder[];

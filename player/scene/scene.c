@@ -28,7 +28,7 @@ weft_scene weft_scene_default(void)
         .lobe = {true, true, true},
         .view_table = true,
         .light_table = true,
-        .layers = 64,
+        .components = 64,
         .table_bits = 8,
         .labels = true,
     };

@@ -70,9 +70,10 @@ typedef struct weft_scene {
     double divider; /* of WEFT_LAYOUT_WIPE, 0 (left) to 1 */
     int pane_count; /* of WEFT_LAYOUT_PANES; the others show two */
     weft_mode pane[WEFT_MODE_COUNT];
-    bool relief; /* the dataset and the layers of the material are seen through their heights, where they have some */
+    bool relief; /* the dataset and the components of the material are seen through their heights, where they have some
+                  */
     /* What the compressed material is evaluated with */
-    int layers;                      /* its first linear layers, where it has some; 0: its lobes */
+    int components;                  /* its first components, where it has some; 0: its lobes */
     bool lobe[WEFT_SCENE_MAX_LOBES]; /* each lobe on or off */
     bool view_table, light_table;
     int table_bits; /* 1 to 8: T and S as if coded with so many */

@@ -159,13 +159,14 @@ static const weft_setting schema[] = {
             CHOICE(raw_format, raw_format_words)),
     SETTING("model.relief",
             OPTION("relief", "on|off", EVALUATION,
-                   "See the dataset, and the layers of a material, through the heights that `weft relief` found "
+                   "See the dataset, and the components of a material, through the heights that `weft relief` found "
                    "(default: on, where there are some)"),
             SWITCH(scene.relief)),
-    SETTING("model.layers",
-            OPTION("layers", "N", EVALUATION,
-                   "Only the first N linear layers of the material, in steps of 4; 0: its lobes (default: all layers)"),
-            WHOLE(scene.layers, 0, WEFT_LAYERS_MAX)),
+    SETTING(
+        "model.components",
+        OPTION("components", "N", EVALUATION,
+               "Only the first N components of the material, in steps of 4; 0: its lobes (default: all components)"),
+        WHOLE(scene.components, 0, WEFT_COMPONENTS_MAX)),
     ARRAY(WEFT_SCENE_MAX_LOBES, "model.lobes",
           OPTION("lobes-on", "N[,N...]|none", EVALUATION, "Only these lobes of the material, counted from 1"),
           SWITCH(scene.lobe), .read = weft_choose_lobes),

@@ -12,13 +12,13 @@ static weft_fetches of_lobes(const weft_material *material)
     return (weft_fetches){texels * (words + entries), texels * (16 * words + 4 * entries)};
 }
 
-/* Coefficients of four layers at once from two levels; their factors, four half floats, from two rows of view nodes for
- * each channel; three floors and a ceiling (player/draw/shaders/layered.glsl). With opacity, three entries of T at each
- * of eight texels.
+/* Coefficients of four components at once from two levels; their factors, four half floats, from two rows of view nodes
+ * for each channel; three floors and a ceiling (player/draw/shaders/factorised.glsl). With opacity, three entries of T
+ * at each of eight texels.
  */
-static weft_fetches of_layers(const weft_material *material)
+static weft_fetches of_components(const weft_material *material)
 {
-    int groups = material->layers->layer_count / WEFT_LAYERS_GROUP, coefficients = LEVELS * groups,
+    int groups = material->components->component_count / WEFT_COMPONENTS_GROUP, coefficients = LEVELS * groups,
         factors = 2 * 3 * groups;
     weft_fetches fetches = {coefficients + factors + 1, 4 * BILINEAR * coefficients + 8 * TRILINEAR * factors + 4};
     if (weft_material_has_holes(material)) {
@@ -37,9 +37,9 @@ static weft_fetches of_march(void)
 }
 
 /* The same coefficients, bounds and opacity at each of three places, with the factors of one view node. */
-static weft_fetches of_layers_through_heights(const weft_material *material)
+static weft_fetches of_components_through_heights(const weft_material *material)
 {
-    int groups = material->layers->layer_count / WEFT_LAYERS_GROUP, coefficients = LEVELS * groups,
+    int groups = material->components->component_count / WEFT_COMPONENTS_GROUP, coefficients = LEVELS * groups,
         factors = 3 * groups, opacity = weft_material_has_holes(material) ? LEVELS * BILINEAR : 0;
     weft_fetches fetches = of_march();
     fetches.reads += CORNERS * (coefficients + factors + 2 + opacity);
@@ -49,9 +49,9 @@ static weft_fetches of_layers_through_heights(const weft_material *material)
 
 weft_fetches weft_fetches_of_material(const weft_material *material)
 {
-    if (!material->layers)
+    if (!material->components)
         return of_lobes(material);
-    return material->heights ? of_layers_through_heights(material) : of_layers(material);
+    return material->heights ? of_components_through_heights(material) : of_components(material);
 }
 
 /* Three lights of each of three views (player/draw/shaders/raw.glsl). */

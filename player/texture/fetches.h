@@ -10,7 +10,7 @@ typedef struct weft_fetches {
     int reads, bytes;
 } weft_fetches;
 
-/* Of a material: of its layers where it has some, through its heights where it has those, else of lobes and tables.
+/* Of a material: of its components where it has some, through its heights where it has those, else of lobes and tables.
  * Pure. */
 weft_fetches weft_fetches_of_material(const weft_material *material);
 

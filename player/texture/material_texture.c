@@ -71,16 +71,16 @@ static void pack_layer(const weft_material_level *level, int lobes, int layer, u
 static weft_code upload_texels(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
     const weft_mip_layout *layout = &t->layout;
-    int lobes = 3 * material->lobe_count, layers = 1 + (lobes + 1) / 2;
+    int lobes = 3 * material->lobe_count, components = 1 + (lobes + 1) / 2;
     size_t most = (size_t)layout->area[0].width * (size_t)layout->area[0].height;
     uint32_t(*word)[4] = calloc(most, sizeof *word);
     if (!word)
         return weft_fail_memory(error, "texels", most * sizeof *word);
-    weft_code code = weft_gl_texture(packed_format, layout->width, layout->height, layers, NULL, &t->texel, error);
-    for (int i = 0; code == WEFT_OK && i < layout->level_count * layers; i++) {
-        weft_mip_area a = layout->area[i / layers];
-        pack_layer(&material->level[i / layers], lobes, i % layers, word);
-        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, i % layers, a.width, a.height, 1, packed_format.layout,
+    weft_code code = weft_gl_texture(packed_format, layout->width, layout->height, components, NULL, &t->texel, error);
+    for (int i = 0; code == WEFT_OK && i < layout->level_count * components; i++) {
+        weft_mip_area a = layout->area[i / components];
+        pack_layer(&material->level[i / components], lobes, i % components, word);
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, i % components, a.width, a.height, 1, packed_format.layout,
                         packed_format.type, word);
     }
     free(word);
@@ -97,9 +97,11 @@ static weft_code upload_table(const weft_material *material, const weft_mip_layo
                               weft_table_texture *table, weft_error *error)
 {
     int count = of_lights ? material->light_count : material->view_count, most = weft_gl_max_layers();
-    int columns = count > 0 ? (count + most - 1) / most : 1, layers = count > 0 ? (count + columns - 1) / columns : 1;
+    int columns = count > 0 ? (count + most - 1) / most : 1,
+        components = count > 0 ? (count + columns - 1) / columns : 1;
     *table = (weft_table_texture){.count = count, .columns = columns};
-    WEFT_TRY(weft_gl_texture(table_format, layout->width * columns, layout->height, layers, NULL, &table->name, error));
+    WEFT_TRY(
+        weft_gl_texture(table_format, layout->width * columns, layout->height, components, NULL, &table->name, error));
     for (int k = 0; count > 0 && k < layout->level_count; k++) {
         weft_mip_area a = layout->area[k];
         const uint8_t *code = codes_of(&material->level[k], of_lights);
@@ -186,8 +188,8 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
     int *entry = NULL;
     WEFT_TRY(weft_material_relief_create(material, &relief, error));
     weft_code code = find_entries(material, &relief, &entry, error);
-    if (code == WEFT_OK && material->layers)
-        code = weft_layer_texture_upload(material->layers, entry, &t->layers, error);
+    if (code == WEFT_OK && material->components)
+        code = weft_component_texture_upload(material->components, entry, &t->components, error);
     if (code == WEFT_OK)
         code = upload_relief(&relief, t, error);
     if (code == WEFT_OK)
@@ -203,7 +205,7 @@ void weft_material_texture_free(weft_material_texture *t)
     glDeleteTextures(1, &t->table.name);
     glDeleteTextures(1, &t->light_table.name);
     weft_direction_texture_free(&t->directions);
-    weft_layer_texture_free(&t->layers);
+    weft_component_texture_free(&t->components);
     weft_relief_texture_free(&t->relief);
     weft_seen_texture_free(&t->seen);
     *t = (weft_material_texture){0};
@@ -212,16 +214,17 @@ void weft_material_texture_free(weft_material_texture *t)
 size_t weft_material_texture_bytes(const weft_material_texture *t)
 {
     size_t texels = (size_t)t->layout.width * (size_t)t->layout.height;
-    size_t layers = 1 + (3 * (size_t)t->lobe_count + 1) / 2;
-    size_t shared, of_layers = weft_layer_texture_bytes(&t->layers, &shared);
-    return of_layers + t->relief.bytes + texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
+    size_t components = 1 + (3 * (size_t)t->lobe_count + 1) / 2;
+    size_t shared, of_components = weft_component_texture_bytes(&t->components, &shared);
+    return of_components + t->relief.bytes +
+           texels * (16 * components + 4 * (size_t)(t->table.count + t->light_table.count));
 }
 
-void weft_material_texture_bind(const weft_material_texture *t, GLuint program, bool layered)
+void weft_material_texture_bind(const weft_material_texture *t, GLuint program, bool factorised)
 {
-    if (layered) {
+    if (factorised) {
         /* Unit 2 is that of a light table, which lobes alone have. */
-        weft_layer_texture_bind(&t->layers, program, 5, 2);
+        weft_component_texture_bind(&t->components, program, 5, 2);
         weft_relief_texture_bind(&t->relief, program, 9);
     }
     weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);

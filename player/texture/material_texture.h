@@ -3,8 +3,8 @@
 #define WEFT_PLAYER_TEXTURE_MATERIAL_TEXTURE_H
 
 #include "btf/material/material.h"
+#include "player/texture/component_texture.h"
 #include "player/texture/direction_texture.h"
-#include "player/texture/layer_texture.h"
 #include "player/texture/mip_layout.h"
 #include "player/texture/relief_texture.h"
 #include "player/texture/seen_texture.h"
@@ -28,8 +28,8 @@ typedef struct weft_material_texture {
     weft_table_texture table, light_table;
     weft_direction_texture directions; /* set 0: views, set 1: lights, set 2: stored views that it is looked at from */
     weft_mip_layout layout;
-    weft_layer_texture layers;
-    weft_relief_texture relief; /* of the layers */
+    weft_component_texture components;
+    weft_relief_texture relief; /* of the components */
     weft_seen_texture seen;     /* what it holds, where it was pruned */
     int lobe_count;
     bool opaque;
@@ -44,8 +44,8 @@ void weft_material_texture_free(weft_material_texture *texture);
 /* Of graphics memory, without the directions. */
 size_t weft_material_texture_bytes(const weft_material_texture *texture);
 
-/* Sets the uniforms of compressed.glsl, or if `layered`, for which the material must have layers, those of
- * layered.glsl; `program` is in use. */
-void weft_material_texture_bind(const weft_material_texture *texture, GLuint program, bool layered);
+/* Sets the uniforms of compressed.glsl, or if `factorised`, for which the material must have components, those of
+ * factorised.glsl; `program` is in use. */
+void weft_material_texture_bind(const weft_material_texture *texture, GLuint program, bool factorised);
 
 #endif

@@ -3,12 +3,12 @@
 #include <stdlib.h>
 
 /* Filtered and repeated, as the material is. */
-static weft_code make_map(weft_texture_format format, int width, int height, int layers, const void *data,
+static weft_code make_map(weft_texture_format format, int width, int height, int components, const void *data,
                           GLuint *texture, weft_error *error)
 {
-    GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+    GLenum target = components > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    weft_code code = weft_gl_texture(format, width, height, layers, data, texture, error);
+    weft_code code = weft_gl_texture(format, width, height, components, data, texture, error);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     WEFT_TRY(code);
     glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR);

@@ -2,12 +2,12 @@
 
 #include <stdio.h>
 
-bool weft_draws_whole_material(const weft_scene *scene, int layers, bool has_heights)
+bool weft_draws_whole_material(const weft_scene *scene, int components, bool has_heights)
 {
     if (has_heights && !scene->relief)
         return false;
-    if (layers > 0)
-        return scene->layers >= layers;
+    if (components > 0)
+        return scene->components >= components;
     bool is_whole = scene->view_table && scene->light_table && scene->table_bits == 8;
     for (int lobe = 0; lobe < WEFT_SCENE_MAX_LOBES; lobe++)
         is_whole = is_whole && scene->lobe[lobe];

@@ -337,7 +337,7 @@ static const weft_key keys[] = {
     {"N", "mip level in false colour", GLFW_KEY_N, .press = toggle_levels},
     {"T", "tint where nothing was measured", GLFW_KEY_T, .press = toggle_extrapolation},
     {"M", "mip levels: trilinear, nearest, none", GLFW_KEY_M, .press = next_level_choice},
-    {"Z", "raw and layers through heights", GLFW_KEY_Z, .press = toggle_relief},
+    {"Z", "raw and components through heights", GLFW_KEY_Z, .press = toggle_relief},
     {.name = "Camera and light"},
     {"arrows", "turn", GLFW_KEY_LEFT, .repeats = true, .press = turn_left},
     {NULL, NULL, GLFW_KEY_RIGHT, .repeats = true, .press = turn_right},

@@ -210,21 +210,22 @@ static void light_section(weft_application *a)
 
 /* ---- Material ---- */
 
-/* Fewer layers are a coarser material that is drawn faster. */
-static void layer_rows(weft_application *a)
+/* Fewer components are a coarser material that is drawn faster. */
+static void component_rows(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
-    int count = weft_player_layer_count(a->player), groups = i->scene.layers / WEFT_LAYERS_GROUP;
+    int count = weft_player_layer_count(a->player), groups = i->scene.components / WEFT_COMPONENTS_GROUP;
     if (count == 0)
         return;
-    groups = groups < count / WEFT_LAYERS_GROUP ? groups : count / WEFT_LAYERS_GROUP;
-    if (weft_ui_whole("Layers / 4", &groups, 0, count / WEFT_LAYERS_GROUP)) {
-        i->scene.layers = WEFT_LAYERS_GROUP * groups;
+    groups = groups < count / WEFT_COMPONENTS_GROUP ? groups : count / WEFT_COMPONENTS_GROUP;
+    if (weft_ui_whole("Components / 4", &groups, 0, count / WEFT_COMPONENTS_GROUP)) {
+        i->scene.components = WEFT_COMPONENTS_GROUP * groups;
         i->changed = true;
     }
     char text[64];
-    snprintf(text, sizeof text, groups > 0 ? "%d of %d layers, %d bytes a texel" : "Lobes in the place of layers",
-             WEFT_LAYERS_GROUP * groups, count, WEFT_LAYERS_GROUP * groups);
+    snprintf(text, sizeof text,
+             groups > 0 ? "%d of %d components, %d bytes a texel" : "Lobes in the place of components",
+             WEFT_COMPONENTS_GROUP * groups, count, WEFT_COMPONENTS_GROUP * groups);
     weft_ui_text(text);
 }
 
@@ -244,7 +245,7 @@ static void material_section(weft_application *a)
     weft_scene *scene = &i->scene;
     int lobes;
     relief_row(a);
-    layer_rows(a);
+    component_rows(a);
     bool view_table, light_table;
     weft_player_material_parts(a->player, &lobes, &view_table, &light_table);
     for (int lobe = 0; lobe < lobes; lobe++) {

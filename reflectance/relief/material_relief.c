@@ -2,14 +2,14 @@
 
 #include <stdlib.h>
 
-static weft_code copy_views(const weft_layers *layers, weft_vec3 **view, weft_error *error)
+static weft_code copy_views(const weft_components *components, weft_vec3 **view, weft_error *error)
 {
-    size_t bytes = (size_t)layers->view_count * sizeof **view;
+    size_t bytes = (size_t)components->view_count * sizeof **view;
     *view = malloc(bytes);
     if (!*view)
-        return weft_fail_memory(error, "views of layers", bytes);
-    for (int k = 0; k < layers->view_count; k++) {
-        const float *xyz = layers->view + 3 * k;
+        return weft_fail_memory(error, "views of components", bytes);
+    for (int k = 0; k < components->view_count; k++) {
+        const float *xyz = components->view + 3 * k;
         (*view)[k] = weft_unit(weft_vec3_of(xyz[0], xyz[1], xyz[2]));
     }
     return WEFT_OK;
@@ -28,24 +28,24 @@ static weft_code decode(const weft_material_heights *heights, float **height_mm,
     return WEFT_OK;
 }
 
-static weft_code create(const weft_material_heights *heights, const weft_layers *layers, weft_material_relief *r,
-                        weft_error *error)
+static weft_code create(const weft_material_heights *heights, const weft_components *components,
+                        weft_material_relief *r, weft_error *error)
 {
-    WEFT_TRY(copy_views(layers, &r->view, error));
-    WEFT_TRY(weft_triangulation_build(r->view, layers->view_count, &r->views, error));
+    WEFT_TRY(copy_views(components, &r->view, error));
+    WEFT_TRY(weft_triangulation_build(r->view, components->view_count, &r->views, error));
     WEFT_TRY(decode(heights, &r->height_mm, error));
     weft_height_field field =
         weft_height_field_of(r->height_mm, heights->width, heights->height, heights->size_mm[0], heights->size_mm[1]);
     r->level_count = heights->level_count;
-    return weft_relief_create(&field, r->view, layers->view_count, &r->relief, error);
+    return weft_relief_create(&field, r->view, components->view_count, &r->relief, error);
 }
 
 weft_code weft_material_relief_create(const weft_material *material, weft_material_relief *result, weft_error *error)
 {
     *result = (weft_material_relief){0};
-    if (!material->heights || !material->layers)
+    if (!material->heights || !material->components)
         return WEFT_OK;
-    weft_code code = create(material->heights, material->layers, result, error);
+    weft_code code = create(material->heights, material->components, result, error);
     if (code != WEFT_OK)
         weft_material_relief_free(result);
     return code;

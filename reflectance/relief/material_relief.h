@@ -1,5 +1,5 @@
-/* A material seen through its heights (reflectance/relief/relief.h): its stored views, which are those of its layers,
- * and what each of them sees of the surface. */
+/* A material seen through its heights (reflectance/relief/relief.h): its stored views, which are those of its
+ * components, and what each of them sees of the surface. */
 #ifndef WEFT_REFLECTANCE_RELIEF_MATERIAL_RELIEF_H
 #define WEFT_REFLECTANCE_RELIEF_MATERIAL_RELIEF_H
 
@@ -16,7 +16,7 @@ typedef struct weft_material_relief {
     int level_count; /* the finest levels that are seen so */
 } weft_material_relief;
 
-/* What `material` is to be seen through; nothing where it has no heights or no layers. The material is not kept.
+/* What `material` is to be seen through; nothing where it has no heights or no components. The material is not kept.
  * Errors: WEFT_BAD_INPUT for views that cannot be triangulated, WEFT_SYSTEM. */
 weft_code weft_material_relief_create(const weft_material *material, weft_material_relief *result, weft_error *error);
 void weft_material_relief_free(weft_material_relief *relief);

@@ -1,6 +1,6 @@
 #include "registration/axes/sightings.h"
 
-#include "registration/photographs.h"
+#include "registration/viewpoint_photographs.h"
 #include "registration/pose/pose_chain.h"
 
 #include <stdio.h>
@@ -57,16 +57,16 @@ static weft_code look(const work *w, const weft_stay *stay, const float *photogr
 
 static weft_code read_stay(const work *w, const weft_stay *stay, weft_axes_shot *shot, weft_error *error)
 {
-    weft_photographs photographs;
+    weft_viewpoint_photographs photographs;
     shot->turns = w->session->turns[stay->shot[0]];
     WEFT_TRY(name_shot(w, stay, shot, error));
-    WEFT_TRY(weft_photographs_read(&w->faults, &w->sight, stay, 0, w->fault, &photographs, error));
+    WEFT_TRY(weft_viewpoint_photographs_read(&w->faults, &w->sight, stay, 0, w->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
         code = look(w, stay, photographs.average, shot, error);
     else
         snprintf(shot->left_out, sizeof shot->left_out, "%.150s", w->fault[stay->shot[0]].reason);
-    weft_photographs_free(&photographs);
+    weft_viewpoint_photographs_free(&photographs);
     return code;
 }
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-/* Encoded values from which an integer file is clipped: as weft_hand_defaults has it for JPEG. */
+/* Encoded values from which an integer file is clipped: as weft_photographs_defaults has it for JPEG. */
 static const float clipped_encoded = 250.0f / 255;
 
 /* Camera raw comes as floats up to 1, at which it is clipped; floats that exceed 1 are none. */

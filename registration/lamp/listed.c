@@ -26,7 +26,7 @@ static void shown_axes(int orientation, double right[2], double up[2])
 }
 
 /* From the frame of the picture to that of the plate; z of the former points against that of the camera. */
-static weft_vec3 from_picture(const weft_hand_photograph *p, weft_vec3 light, axes counted)
+static weft_vec3 from_picture(const weft_photographs_photograph *p, weft_vec3 light, axes counted)
 {
     double right[2], up[2];
     const double(*r)[3] = p->pose.rotation;
@@ -39,7 +39,7 @@ static weft_vec3 from_picture(const weft_hand_photograph *p, weft_vec3 light, ax
     return weft_vec3_of(plate[0], plate[1], plate[2]);
 }
 
-static weft_listed_lamp lamp_of(const weft_light_list *list, const weft_hand_photograph *p, axes counted)
+static weft_listed_lamp lamp_of(const weft_light_list *list, const weft_photographs_photograph *p, axes counted)
 {
     int row = weft_light_list_find(list, p->name);
     if (row < 0 || !list->row[row].has_light)
@@ -51,12 +51,12 @@ static weft_listed_lamp lamp_of(const weft_light_list *list, const weft_hand_pho
                               weft_rad_of_deg(deviation_deg)};
 }
 
-weft_listed_lamp weft_listed_lamp_of(const weft_light_list *list, const weft_hand_photograph *photograph)
+weft_listed_lamp weft_listed_lamp_of(const weft_light_list *list, const weft_photographs_photograph *photograph)
 {
     return lamp_of(list, photograph, AS_SHOWN);
 }
 
-weft_code weft_listed_check(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+weft_code weft_listed_check(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                             weft_error *error)
 {
     int named = 0;
@@ -84,29 +84,29 @@ static double angle_deg(weft_vec3 a, weft_vec3 b)
 }
 
 /* Median angle between the lamps listed and found. */
-static double median_angle_deg(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+static double median_angle_deg(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                                axes counted, double *scratch)
 {
     size_t compared = 0;
     for (int i = 0; i < count; i++) {
         weft_listed_lamp lamp = lamp_of(list, &photograph[i], counted);
-        if (weft_hand_used(&photograph[i]) && lamp.found)
+        if (weft_photographs_used(&photograph[i]) && lamp.found)
             scratch[compared++] = angle_deg(lamp.light, photograph[i].lamp.position_mm);
     }
     return weft_quantile(scratch, compared, 0.5);
 }
 
-static double limit_deg(const weft_listed_lamp *lamp, const weft_hand_photograph *p)
+static double limit_deg(const weft_listed_lamp *lamp, const weft_photographs_photograph *p)
 {
     return deviations * hypot(weft_deg_of_rad(lamp->deviation_rad), p->lamp.uncertainty_deg);
 }
 
-static bool lamp_differs(const weft_listed_lamp *lamp, const weft_hand_photograph *p)
+static bool lamp_differs(const weft_listed_lamp *lamp, const weft_photographs_photograph *p)
 {
-    return weft_hand_used(p) && lamp->found && angle_deg(lamp->light, p->lamp.position_mm) > limit_deg(lamp, p);
+    return weft_photographs_used(p) && lamp->found && angle_deg(lamp->light, p->lamp.position_mm) > limit_deg(lamp, p);
 }
 
-static weft_code note_axes(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+static weft_code note_axes(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                            double *scratch, weft_lines *notes, weft_error *error)
 {
     double median[AXES_COUNT];
@@ -123,19 +123,19 @@ static weft_code note_axes(const weft_light_list *list, const weft_hand_photogra
                           list->path, median[AS_SHOWN], median[best], axes_name[best]);
 }
 
-static weft_code compare_lamps(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+static weft_code compare_lamps(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                                double *scratch, weft_lines *notes, weft_error *error)
 {
     int differing = 0, compared = 0;
     for (int i = 0; i < count; i++) {
         weft_listed_lamp lamp = weft_listed_lamp_of(list, &photograph[i]);
-        compared += weft_hand_used(&photograph[i]) && lamp.found;
+        compared += weft_photographs_used(&photograph[i]) && lamp.found;
         differing += lamp_differs(&lamp, &photograph[i]);
     }
     if (compared >= 3 && 2 * differing > compared)
         return note_axes(list, photograph, count, scratch, notes, error);
     for (int i = 0; i < count && differing > 0; i++) {
-        const weft_hand_photograph *p = &photograph[i];
+        const weft_photographs_photograph *p = &photograph[i];
         weft_listed_lamp lamp = weft_listed_lamp_of(list, p);
         if (lamp_differs(&lamp, p))
             WEFT_TRY(weft_lines_add(notes, error,
@@ -146,9 +146,9 @@ static weft_code compare_lamps(const weft_light_list *list, const weft_hand_phot
     return WEFT_OK;
 }
 
-static const weft_listed_light *listed_view(const weft_light_list *list, const weft_hand_photograph *p)
+static const weft_listed_light *listed_view(const weft_light_list *list, const weft_photographs_photograph *p)
 {
-    int row = weft_hand_used(p) ? weft_light_list_find(list, p->name) : -1;
+    int row = weft_photographs_used(p) ? weft_light_list_find(list, p->name) : -1;
     return row >= 0 && list->row[row].has_view ? &list->row[row] : NULL;
 }
 
@@ -157,13 +157,14 @@ static weft_vec3 turned(weft_vec3 v, double angle)
     return weft_vec3_of(v.x * cos(angle) - v.y * sin(angle), v.x * sin(angle) + v.y * cos(angle), v.z);
 }
 
-static double view_angle_deg(const weft_hand_photograph *p, const weft_listed_light *row, double turn)
+static double view_angle_deg(const weft_photographs_photograph *p, const weft_listed_light *row, double turn)
 {
     return angle_deg(weft_pose_camera_position(&p->pose), turned(row->view, turn));
 }
 
 /* The turn of the table against the sheet: that of the photograph whose turn suits the others best. */
-static double find_turn(const weft_light_list *list, const weft_hand_photograph *photograph, int count, double *scratch)
+static double find_turn(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
+                        double *scratch)
 {
     double least = INFINITY, best = 0;
     for (int i = 0; i < count; i++) {
@@ -185,7 +186,7 @@ static double find_turn(const weft_light_list *list, const weft_hand_photograph 
     return best;
 }
 
-static weft_code compare_views(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+static weft_code compare_views(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                                double *scratch, weft_lines *notes, weft_error *error)
 {
     double turn = find_turn(list, photograph, count, scratch);
@@ -200,7 +201,7 @@ static weft_code compare_views(const weft_light_list *list, const weft_hand_phot
     return WEFT_OK;
 }
 
-static weft_code note_absent(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+static weft_code note_absent(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                              weft_lines *notes, weft_error *error)
 {
     int absent = list->count, unlisted = 0, first = -1;
@@ -217,7 +218,7 @@ static weft_code note_absent(const weft_light_list *list, const weft_hand_photog
                       : WEFT_OK;
 }
 
-weft_code weft_listed_compare(const weft_light_list *list, const weft_hand_photograph *photograph, int count,
+weft_code weft_listed_compare(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                               weft_lines *notes, weft_error *error)
 {
     double *scratch = malloc(((size_t)count + 1) * sizeof *scratch);

@@ -84,8 +84,8 @@ static bool add_value(const weft_light_values *values, weft_pixel at, double sum
     double u = at.x - x, v = at.y - y;
     const uint16_t *top = values->samples + 3 * ((long)y * values->width + x), *low = top + 3 * (long)values->width;
     for (int c = 0; c < 3; c++) {
-        if (top[c] == WEFT_HAND_FULL_SCALE || top[c + 3] == WEFT_HAND_FULL_SCALE || low[c] == WEFT_HAND_FULL_SCALE ||
-            low[c + 3] == WEFT_HAND_FULL_SCALE)
+        if (top[c] == WEFT_PHOTOGRAPHS_FULL_SCALE || top[c + 3] == WEFT_PHOTOGRAPHS_FULL_SCALE ||
+            low[c] == WEFT_PHOTOGRAPHS_FULL_SCALE || low[c + 3] == WEFT_PHOTOGRAPHS_FULL_SCALE)
             return false;
         sum[c] += (1 - v) * ((1 - u) * top[c] + u * top[c + 3]) + v * ((1 - u) * low[c] + u * low[c + 3]);
     }
@@ -122,7 +122,7 @@ static bool sample_place(const weft_paper_places *places, int place, const weft_
     double x = (ideal.x - camera->cx) / camera->fx, y = (ideal.y - camera->cy) / camera->fy;
     *sample = (weft_paper_sample){.place = place, .radius_squared = (float)(x * x + y * y)};
     for (int c = 0; c < 3; c++) {
-        sample->light[c] = (float)(sum[c] / (WEFT_HAND_FULL_SCALE * (double)(samples_across * samples_across)));
+        sample->light[c] = (float)(sum[c] / (WEFT_PHOTOGRAPHS_FULL_SCALE * (double)(samples_across * samples_across)));
         if (sample->light[c] < values->dark)
             return false;
     }

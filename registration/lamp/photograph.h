@@ -32,7 +32,7 @@ typedef struct weft_lamp_place {
     double residual; /* of bare paper: standard deviation of the logarithm of light */
 } weft_lamp_place;
 
-typedef struct weft_hand_photograph {
+typedef struct weft_photographs_photograph {
     char *name; /* of the file, in its folder */
     weft_exif exif;
     char remark[192];        /* why it is left out; empty where it is used */
@@ -58,10 +58,10 @@ typedef struct weft_hand_photograph {
     long clipped_texels, dark_texels, hidden_texels; /* that are masked */
 
     weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
-} weft_hand_photograph;
+} weft_photographs_photograph;
 
 /* Keeps those corners whose `keep` [corner_count] is not 0. */
-static inline void weft_hand_keep_corners(weft_hand_photograph *photograph, const uint8_t *keep)
+static inline void weft_photographs_keep_corners(weft_photographs_photograph *photograph, const uint8_t *keep)
 {
     int kept = 0;
     for (int i = 0; i < photograph->corner_count; i++) {
@@ -76,7 +76,7 @@ static inline void weft_hand_keep_corners(weft_hand_photograph *photograph, cons
     photograph->corner_count = kept;
 }
 
-static inline bool weft_hand_used(const weft_hand_photograph *photograph)
+static inline bool weft_photographs_used(const weft_photographs_photograph *photograph)
 {
     return photograph->remark[0] == 0;
 }

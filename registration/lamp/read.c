@@ -9,7 +9,7 @@
 weft_file_range weft_file_range_of(const weft_exif *exif, double clipped_at)
 {
     const double steps = 5;
-    double all = exif->is_float || exif->bits > 16 ? WEFT_HAND_FULL_SCALE : exp2(exif->bits) - 1;
+    double all = exif->is_float || exif->bits > 16 ? WEFT_PHOTOGRAPHS_FULL_SCALE : exp2(exif->bits) - 1;
     return (weft_file_range){exif->is_float ? INFINITY : (float)clipped_at, (float)(steps / all)};
 }
 
@@ -20,7 +20,8 @@ static void decode_pixel(const weft_tone_curve *tone, float clipped_at, const fl
     for (int c = 0; c < 3; c++) {
         bool clipped = !(encoded[c] < clipped_at);
         float light = weft_tone_decode(tone, encoded[c]);
-        sample[c] = clipped ? WEFT_HAND_FULL_SCALE : (uint16_t)fminf(light * WEFT_HAND_FULL_SCALE + 0.5f, 65534);
+        sample[c] =
+            clipped ? WEFT_PHOTOGRAPHS_FULL_SCALE : (uint16_t)fminf(light * WEFT_PHOTOGRAPHS_FULL_SCALE + 0.5f, 65534);
         sum += clipped ? NAN : light;
     }
     *grey = sum / 3;

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /* A sample that has reached this is clipped. */
-enum { WEFT_HAND_FULL_SCALE = 65535 };
+enum { WEFT_PHOTOGRAPHS_FULL_SCALE = 65535 };
 
 /* What a file's values are good for, 0..1 of its range. */
 typedef struct weft_file_range {
@@ -22,7 +22,7 @@ weft_file_range weft_file_range_of(const weft_exif *exif, double clipped_at);
 
 typedef struct weft_light_values {
     int width, height;
-    uint16_t *samples; /* [height][width][3] light, WEFT_HAND_FULL_SCALE where the file's value is clipped */
+    uint16_t *samples; /* [height][width][3] light, WEFT_PHOTOGRAPHS_FULL_SCALE where the file's value is clipped */
     float *grey;       /* [height][width] mean of the channels, 1 at full scale; NaN where one is clipped */
     float dark;        /* light below it is too dark to be read; 1 at full scale */
 } weft_light_values;

@@ -1,5 +1,5 @@
-/* EXR files of other programs: layers, channels of other names, and a stored rectangle that is not the shown one. Their
- * bytes are written here, after the description of the format, not by the library that reads them. */
+/* EXR files of other programs: components, channels of other names, and a stored rectangle that is not the shown one.
+ * Their bytes are written here, after the description of the format, not by the library that reads them. */
 #include "base/atomic_file.h"
 #include "base/picture/image.h"
 

@@ -1,15 +1,15 @@
-#include "capture/hand/lens.h"
-#include "capture/hand/plan.h"
+#include "capture/synthetic/lens.h"
+#include "capture/synthetic/plan.h"
 #include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 
-static weft_snap_lens a_lens(void)
+static weft_synthetic_lens a_lens(void)
 {
-    weft_snap_request request = weft_snap_request_default();
-    weft_snap_shot shot;
+    weft_synthetic_request request = weft_synthetic_request_default();
+    weft_synthetic_shot shot;
     request.photograph_count = 1;
-    weft_snap_plan(&request, &shot);
+    weft_synthetic_plan(&request, &shot);
     return shot.lens;
 }
 
@@ -19,12 +19,12 @@ static const double middle_of_pupil[2] = {0, 0};
 static void a_ray_comes_back_to_its_pixel(void **state)
 {
     (void)state;
-    weft_snap_lens lens = a_lens();
+    weft_synthetic_lens lens = a_lens();
     for (int i = 0; i < 100; i++) {
         double x = (lens.width - 1) * (i % 10) / 9.0, y = (lens.height - 1) * (i / 10) / 9.0, pixel[2];
-        weft_snap_ray ray;
-        weft_snap_lens_ray(&lens, x, y, middle_of_pupil, &ray);
-        assert_true(weft_snap_lens_project(&lens, weft_scale(ray.along, 100 + 7 * i), pixel));
+        weft_synthetic_ray ray;
+        weft_synthetic_lens_ray(&lens, x, y, middle_of_pupil, &ray);
+        assert_true(weft_synthetic_lens_project(&lens, weft_scale(ray.along, 100 + 7 * i), pixel));
         assert_float_equal(pixel[0], x, 1e-6);
         assert_float_equal(pixel[1], y, 1e-6);
     }
@@ -35,12 +35,12 @@ static void a_ray_comes_back_to_its_pixel(void **state)
 static void the_lens_distorts(void **state)
 {
     (void)state;
-    weft_snap_lens lens = a_lens();
+    weft_synthetic_lens lens = a_lens();
     double slope[2], scale = lens.image_distance_mm * lens.width / lens.sensor_width_mm;
-    weft_snap_lens_slopes(&lens, lens.width - 1, lens.axis_y, slope);
+    weft_synthetic_lens_slopes(&lens, lens.width - 1, lens.axis_y, slope);
     double moved = slope[0] * scale - (lens.width - 1 - lens.axis_x);
     assert_true(moved > 5 && moved < 80);
-    weft_snap_lens_slopes(&lens, lens.axis_x + 30, lens.axis_y, slope);
+    weft_synthetic_lens_slopes(&lens, lens.axis_x + 30, lens.axis_y, slope);
     assert_float_equal(slope[0] * scale, 30, 0.01);
 }
 
@@ -48,12 +48,12 @@ static void the_lens_distorts(void **state)
 static void the_distortion_is_that_of_the_truth(void **state)
 {
     (void)state;
-    weft_snap_lens lens = a_lens();
+    weft_synthetic_lens lens = a_lens();
     double pitch = 23.5 / 3000, x = 2711, y = 1804, slope[2];
     double dx = (x - lens.axis_x) * pitch, dy = (y - lens.axis_y) * pitch;
     double q2 = (dx * dx + dy * dy) / (0.25 * pitch * pitch * (3000.0 * 3000 + 2000.0 * 2000));
     double scale = 1 + lens.division[0] * q2 + lens.division[1] * q2 * q2;
-    weft_snap_lens_slopes(&lens, x, y, slope);
+    weft_synthetic_lens_slopes(&lens, x, y, slope);
     assert_float_equal(slope[0] * scale * lens.image_distance_mm, dx, 1e-9);
     assert_float_equal(slope[1] * scale * lens.image_distance_mm, dy, 1e-9);
 }
@@ -62,15 +62,15 @@ static void the_distortion_is_that_of_the_truth(void **state)
 static void rays_meet_in_focus(void **state)
 {
     (void)state;
-    weft_snap_lens lens = a_lens();
+    weft_synthetic_lens lens = a_lens();
     double x = 0.3 * lens.width, y = 0.4 * lens.height, blur = 0;
-    weft_snap_ray chief;
-    weft_snap_lens_ray(&lens, x, y, middle_of_pupil, &chief);
+    weft_synthetic_ray chief;
+    weft_synthetic_lens_ray(&lens, x, y, middle_of_pupil, &chief);
     weft_vec3 sharp = weft_scale(chief.along, lens.focus_mm / chief.along.z);
     for (int i = 0; i < 16; i++) {
         double pupil[2] = {cos(i), sin(i)};
-        weft_snap_ray ray;
-        assert_true(weft_snap_lens_ray(&lens, x, y, pupil, &ray));
+        weft_synthetic_ray ray;
+        assert_true(weft_synthetic_lens_ray(&lens, x, y, pupil, &ray));
         weft_vec3 at = weft_add(ray.from, weft_scale(ray.along, (lens.focus_mm - ray.from.z) / ray.along.z));
         assert_true(weft_length(weft_subtract(at, sharp)) < 1e-9);
         weft_vec3 half = weft_add(ray.from, weft_scale(ray.along, 0.5 * lens.focus_mm / ray.along.z));
@@ -95,14 +95,14 @@ static double shared_area(double r, double big, double apart)
 static void the_rim_shades_the_corners(void **state)
 {
     (void)state;
-    weft_snap_lens lens = a_lens();
+    weft_synthetic_lens lens = a_lens();
     double r = lens.pupil_radius_mm * (1 - lens.rim_mm / lens.focus_mm), least = 1;
     for (int i = 0; i <= 40; i++) {
         double x = lens.axis_x * (1 - i / 40.0), y = lens.axis_y * (1 - i / 40.0), slope[2];
-        weft_snap_lens_slopes(&lens, x, y, slope);
+        weft_synthetic_lens_slopes(&lens, x, y, slope);
         double cosine = 1 / sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
         double open = shared_area(r, lens.rim_radius_mm, lens.rim_mm * hypot(slope[0], slope[1])) / (WEFT_PI * r * r);
-        assert_float_equal(weft_snap_lens_vignetting(&lens, x, y), open * pow(cosine, 4), 0.01);
+        assert_float_equal(weft_synthetic_lens_vignetting(&lens, x, y), open * pow(cosine, 4), 0.01);
         least = fmin(least, open);
     }
     assert_true(least > 0.3 && least < 0.9);

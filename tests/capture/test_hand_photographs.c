@@ -1,5 +1,5 @@
 #include "btf/dataset/dataset.h"
-#include "capture/hand/hand.h"
+#include "capture/synthetic/synthetic.h"
 #include "registration/pose/opencv_bridge.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
@@ -17,9 +17,9 @@
 
 enum { COUNT = 3 };
 
-static weft_snap_request small_request(const char *folder)
+static weft_synthetic_request small_request(const char *folder)
 {
-    weft_snap_request request = weft_snap_request_default();
+    weft_synthetic_request request = weft_synthetic_request_default();
     request.folder = folder;
     request.content = "checker";
     request.width = 360;
@@ -29,24 +29,24 @@ static weft_snap_request small_request(const char *folder)
     return request;
 }
 
-static void take(const weft_snap_request *request)
+static void take(const weft_synthetic_request *request)
 {
     char warning[WEFT_MESSAGE_SIZE];
     weft_error error = {0};
-    expect_ok(weft_snap_run(request, NULL, warning, &error), &error);
+    expect_ok(weft_synthetic_run(request, NULL, warning, &error), &error);
 }
 
-static bool project(const weft_snap_shot *shot, double x, double y, double pixel[2])
+static bool project(const weft_synthetic_shot *shot, double x, double y, double pixel[2])
 {
     const double(*r)[3] = shot->pose.rotation;
     weft_vec3 t = shot->pose.translation;
-    return weft_snap_lens_project(
+    return weft_synthetic_lens_project(
         &shot->lens,
         weft_vec3_of(r[0][0] * x + r[0][1] * y + t.x, r[1][0] * x + r[1][1] * y + t.y, r[2][0] * x + r[2][1] * y + t.z),
         pixel);
 }
 
-static void path_of(const weft_snap_request *request, const weft_snap_shot *shot, char path[PATH_MAX])
+static void path_of(const weft_synthetic_request *request, const weft_synthetic_shot *shot, char path[PATH_MAX])
 {
     snprintf(path, PATH_MAX, "%s/%.31s", request->folder, shot->name);
 }
@@ -54,7 +54,8 @@ static void path_of(const weft_snap_request *request, const weft_snap_shot *shot
 /* ---- Geometry ---- */
 
 /* The detector draws all four corners of a black marker inward alike: their mean does not know. */
-static void expect_marker(const weft_snap_request *request, const weft_snap_shot *shot, const weft_marker *marker)
+static void expect_marker(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
+                          const weft_marker *marker)
 {
     weft_target target = weft_target_printed(request->opening_mm);
     weft_rectangle r = weft_target_marker(&target, marker->id);
@@ -72,17 +73,17 @@ static void expect_marker(const weft_snap_request *request, const weft_snap_shot
 static void markers_lie_where_the_truth_says(void **state)
 {
     (void)state;
-    weft_snap_request request = small_request("markers");
-    weft_snap_shot shot[COUNT];
+    weft_synthetic_request request = small_request("markers");
+    weft_synthetic_shot shot[COUNT];
     weft_error error = {0};
-    request.set = WEFT_SNAP_TRIPOD;
+    request.set = WEFT_SYNTHETIC_TRIPOD;
     request.width = 1500;
-    request.format = WEFT_SNAP_TIFF;
+    request.format = WEFT_SYNTHETIC_TIFF;
     request.photograph_count = 1;
     request.no_balls = true; /* whose shadow may lie on a marker */
     request.truth_size = 0;
     take(&request);
-    weft_snap_plan(&request, shot);
+    weft_synthetic_plan(&request, shot);
     char path[PATH_MAX];
     weft_image image;
     path_of(&request, &shot[0], path);
@@ -122,19 +123,19 @@ static double mean_about(const weft_image *image, const double at[2], int channe
 static void photographs_show_the_true_reflectance(void **state)
 {
     (void)state;
-    weft_snap_request request = small_request("linear");
-    weft_snap_shot shot[COUNT];
+    weft_synthetic_request request = small_request("linear");
+    weft_synthetic_shot shot[COUNT];
     weft_error error = {0};
     weft_dataset *truth;
     weft_half samples[16 * 16 * COUNT * 3];
     uint8_t mask[16 * 16 * COUNT];
     int compared = 0;
-    request.format = WEFT_SNAP_TIFF;
-    request.set = WEFT_SNAP_TRIPOD;
+    request.format = WEFT_SYNTHETIC_TIFF;
+    request.set = WEFT_SYNTHETIC_TRIPOD;
     request.width = 900;
     request.no_balls = request.no_pin = true;
     take(&request);
-    weft_snap_plan(&request, shot);
+    weft_synthetic_plan(&request, shot);
     expect_ok(weft_dataset_open("linear.truth.btf.h5", &truth, &error), &error);
     assert_int_equal(weft_dataset_get_layout(truth)->distance, WEFT_NEAR);
     expect_ok(weft_dataset_read_block(truth, 0, 0, 16, 16, samples, mask, &error), &error);
@@ -156,7 +157,7 @@ static void photographs_show_the_true_reflectance(void **state)
                 const double *colour = &shot[i].lamp.colour.r;
                 double white = lux / WEFT_PI * colour[channel] * shot[i].exposure.gain *
                                shot[i].exposure.white_balance[channel] *
-                               weft_snap_lens_vignetting(&shot[i].lens, pixel[0], pixel[1]);
+                               weft_synthetic_lens_vignetting(&shot[i].lens, pixel[0], pixel[1]);
                 double expected = (double)weft_float_of_half(samples[(texel * COUNT + i) * 3 + channel]) * white;
                 if (expected > 0.9)
                     continue;
@@ -179,12 +180,12 @@ static void noise_is_that_of_electrons(void **state)
           *second = malloc(PIXELS * sizeof *second);
     assert_true(wall && first && second);
     for (int iso = 100; iso <= 6400; iso *= 8) {
-        weft_snap_exposure exposure = {.iso = iso, .gain = 1e-3, .white_balance = {1, 1, 1}};
+        weft_synthetic_exposure exposure = {.iso = iso, .gain = 1e-3, .white_balance = {1, 1, 1}};
         double mean = 0, squares = 0, full_well = 60000.0 * 100 / iso;
         for (int i = 0; i < PIXELS; i++)
             wall[i] = 400;
-        assert_int_equal(weft_snap_sense(&exposure, wall, PIXELS, 1, first, NULL), WEFT_OK);
-        assert_int_equal(weft_snap_sense(&exposure, wall, PIXELS, 2, second, NULL), WEFT_OK);
+        assert_int_equal(weft_synthetic_sense(&exposure, wall, PIXELS, 1, first, NULL), WEFT_OK);
+        assert_int_equal(weft_synthetic_sense(&exposure, wall, PIXELS, 2, second, NULL), WEFT_OK);
         for (int i = 0; i < PIXELS; i++) {
             double difference = (double)first[i] - (double)second[i];
             mean += (double)first[i] / PIXELS;
@@ -215,15 +216,15 @@ static void threads_change_nothing(void **state)
 {
     (void)state;
     static const char *const folder[2] = {"one", "three"};
-    weft_snap_shot shot[COUNT];
+    weft_synthetic_shot shot[COUNT];
     int threads = omp_get_max_threads();
     for (int run = 0; run < 2; run++) {
-        weft_snap_request request = small_request(folder[run]);
+        weft_synthetic_request request = small_request(folder[run]);
         request.rubbish_count = 1; /* shaken */
         request.hand_shadows = 1;
         omp_set_num_threads(run == 0 ? 1 : 3);
         take(&request);
-        weft_snap_plan(&request, shot);
+        weft_synthetic_plan(&request, shot);
     }
     omp_set_num_threads(threads);
     for (int i = 0; i < COUNT; i++) {
@@ -233,10 +234,10 @@ static void threads_change_nothing(void **state)
         expect_same_files(a, b);
     }
     expect_same_files("one.truth.json", "three.truth.json");
-    weft_snap_request other = small_request("other");
+    weft_synthetic_request other = small_request("other");
     other.seed = 2;
-    weft_snap_shot otherwise[COUNT];
-    weft_snap_plan(&other, otherwise);
+    weft_synthetic_shot otherwise[COUNT];
+    weft_synthetic_plan(&other, otherwise);
     assert_true(otherwise[0].pose.translation.z != shot[0].pose.translation.z);
 }
 
@@ -257,13 +258,13 @@ static double exif_number(ExifData *data, ExifIfd ifd, ExifTag tag)
 static void exif_says_what_the_camera_did(void **state)
 {
     (void)state;
-    weft_snap_request request = small_request("noted");
-    weft_snap_shot shot[COUNT];
+    weft_synthetic_request request = small_request("noted");
+    weft_synthetic_shot shot[COUNT];
     bool turned = false;
     request.truth_size = 0;
     request.seed = 3; /* its first three stand upright and lie */
     take(&request);
-    weft_snap_plan(&request, shot);
+    weft_synthetic_plan(&request, shot);
     for (int i = 0; i < COUNT; i++) {
         char path[PATH_MAX], date[32];
         path_of(&request, &shot[i], path);
@@ -306,25 +307,25 @@ static void exif_holds_every_exposure(void **state)
 static void the_truth_is_written_down(void **state)
 {
     (void)state;
-    weft_snap_request request = small_request("rubbish/");
-    weft_snap_shot shot[7];
+    weft_synthetic_request request = small_request("rubbish/");
+    weft_synthetic_shot shot[7];
     request.width = 300;
     request.photograph_count = 7;
     request.rubbish_count = 6;
     request.truth_size = 4;
     take(&request);
-    weft_snap_plan(&request, shot);
+    weft_synthetic_plan(&request, shot);
     json_t *root = json_load_file("rubbish.truth.json", 0, NULL), *list = json_object_get(root, "photographs");
     assert_int_equal(json_array_size(list), 7);
-    int seen[WEFT_SNAP_FAULT_COUNT] = {0};
+    int seen[WEFT_SYNTHETIC_FAULT_COUNT] = {0};
     for (size_t i = 0; i < 7; i++) {
         json_t *one = json_array_get(list, i), *at = json_object_get(json_object_get(one, "lamp"), "at_mm");
         assert_string_equal(json_string_value(json_object_get(one, "name")), shot[i].name);
-        assert_string_equal(json_string_value(json_object_get(one, "fault")), weft_snap_fault_name(shot[i].fault));
+        assert_string_equal(json_string_value(json_object_get(one, "fault")), weft_synthetic_fault_name(shot[i].fault));
         assert_float_equal(json_real_value(json_array_get(at, 2)), shot[i].lamp.at.z, 1e-6);
         seen[shot[i].fault]++;
     }
-    for (int fault = 0; fault < WEFT_SNAP_FAULT_COUNT; fault++)
+    for (int fault = 0; fault < WEFT_SYNTHETIC_FAULT_COUNT; fault++)
         assert_int_equal(seen[fault], 1);
     json_decref(root);
     weft_error error = {0};
@@ -333,7 +334,7 @@ static void the_truth_is_written_down(void **state)
     expect_ok(weft_dataset_open("rubbish.truth.btf.h5", &truth, &error), &error);
     expect_ok(weft_dataset_read_block(truth, 0, 0, 4, 4, NULL, mask, &error), &error);
     for (int i = 0; i < 7; i++)
-        assert_int_equal(mask[i] == 0, shot[i].fault == WEFT_SNAP_GOOD);
+        assert_int_equal(mask[i] == 0, shot[i].fault == WEFT_SYNTHETIC_GOOD);
     weft_dataset_close(truth);
 }
 
@@ -341,18 +342,18 @@ static void the_truth_is_written_down(void **state)
 static void a_tripod_stands(void **state)
 {
     (void)state;
-    weft_snap_request request = small_request("stand");
-    weft_snap_shot shot[COUNT];
-    request.set = WEFT_SNAP_TRIPOD;
+    weft_synthetic_request request = small_request("stand");
+    weft_synthetic_shot shot[COUNT];
+    request.set = WEFT_SYNTHETIC_TRIPOD;
     request.width = 300;
     request.truth_size = 0;
     take(&request);
-    weft_snap_plan(&request, shot);
+    weft_synthetic_plan(&request, shot);
     FILE *notes = fopen("stand.lp", "r");
     int count;
     assert_true(notes && fscanf(notes, "%d", &count) == 1 && count == COUNT);
     for (int i = 0; i < COUNT; i++) {
-        char name[WEFT_SNAP_NAME_SIZE];
+        char name[WEFT_SYNTHETIC_NAME_SIZE];
         weft_vec3 light;
         assert_memory_equal(&shot[i].pose, &shot[0].pose, sizeof shot[0].pose);
         assert_float_equal(shot[i].lens.focus_mm, shot[0].lens.focus_mm, 0);
@@ -376,12 +377,12 @@ static void a_tripod_stands(void **state)
 static void a_folder_in_use_is_left_alone(void **state)
 {
     (void)state;
-    weft_snap_request request = small_request("used");
+    weft_synthetic_request request = small_request("used");
     char warning[WEFT_MESSAGE_SIZE];
     weft_error error = {0};
     assert_int_equal(mkdir("used", 0777), 0);
     scratch_store("used/letter.txt", "dear", 4);
-    assert_int_equal(weft_snap_run(&request, NULL, warning, &error), WEFT_BAD_USAGE);
+    assert_int_equal(weft_synthetic_run(&request, NULL, warning, &error), WEFT_BAD_USAGE);
     assert_non_null(strstr(error.message, "not empty"));
     assert_int_not_equal(access("used.truth.json", F_OK), 0);
 }

@@ -1,30 +1,30 @@
-#include "capture/hand/plan.h"
-#include "capture/hand/render.h"
+#include "capture/synthetic/plan.h"
+#include "capture/synthetic/render.h"
 #include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 
 /* A scene without things on the sheet or a window, and a small lamp. */
 typedef struct stage {
-    weft_snap_request request;
-    weft_snap_shot shot;
-    weft_snap_sheet sheet;
-    weft_snap_content content;
-    weft_snap_scene scene;
+    weft_synthetic_request request;
+    weft_synthetic_shot shot;
+    weft_synthetic_sheet sheet;
+    weft_synthetic_content content;
+    weft_synthetic_scene scene;
 } stage;
 
 static void set_up(stage *s, bool with_things)
 {
-    *s = (stage){.request = weft_snap_request_default()};
+    *s = (stage){.request = weft_synthetic_request_default()};
     s->request.photograph_count = 1;
     s->request.width = 1800;
     s->request.window = 0;
     s->request.lamp_radius_mm = 2;
     s->request.no_balls = s->request.no_pin = !with_things;
-    weft_snap_plan(&s->request, &s->shot);
-    s->sheet = weft_snap_sheet_of(s->request.opening_mm, true, 1);
-    s->content = (weft_snap_content){.opening_mm = s->request.opening_mm, .is_checker = true};
-    s->scene = weft_snap_scene_of(&s->request, &s->shot, &s->sheet, &s->content);
+    weft_synthetic_plan(&s->request, &s->shot);
+    s->sheet = weft_synthetic_sheet_of(s->request.opening_mm, true, 1);
+    s->content = (weft_synthetic_content){.opening_mm = s->request.opening_mm, .is_checker = true};
+    s->scene = weft_synthetic_scene_of(&s->request, &s->shot, &s->sheet, &s->content);
 }
 
 /* What the eye sees of the plane straight from above a point, the mean over the lamp. */
@@ -32,9 +32,9 @@ static double seen_at(const stage *s, double x, double y)
 {
     double sum = 0;
     for (int i = 0; i < 64; i++) {
-        weft_snap_chance chance = {{(i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8}, 1, (uint32_t)i};
-        sum += weft_snap_scene_look(&s->scene, weft_vec3_of(x, y, 5), weft_vec3_of(0, 0, -1), &chance,
-                                    WEFT_SNAP_ALL_SOLIDS, WEFT_SNAP_ALL_SOLIDS)
+        weft_synthetic_chance chance = {{(i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8}, 1, (uint32_t)i};
+        sum += weft_synthetic_scene_look(&s->scene, weft_vec3_of(x, y, 5), weft_vec3_of(0, 0, -1), &chance,
+                                         WEFT_SYNTHETIC_ALL_SOLIDS, WEFT_SYNTHETIC_ALL_SOLIDS)
                    .r /
                64;
     }
@@ -98,7 +98,7 @@ static void distances_of_lines_are_least(void **state)
     enum { STEPS = 400 };
     for (int i = 0; i < 60; i++) {
         weft_vec3 p = {20 * sin(i), 20 * cos(3 * i), 10}, q = {30 * cos(i), 25 * sin(2 * i), 90};
-        weft_snap_solid s = {.a = {15 * sin(5 * i), 12, 30 + 20 * cos(i)}, .b = {-20 * cos(i), 8 * sin(i), 50}};
+        weft_synthetic_solid s = {.a = {15 * sin(5 * i), 12, 30 + 20 * cos(i)}, .b = {-20 * cos(i), 8 * sin(i), 50}};
         double least = INFINITY;
         for (int k = 0; k <= STEPS * STEPS; k++) {
             double u = (double)(k % STEPS) / (STEPS - 1), v = (double)(k / STEPS) / STEPS;
@@ -106,7 +106,7 @@ static void distances_of_lines_are_least(void **state)
             weft_vec3 on_solid = weft_add(s.a, weft_scale(weft_subtract(s.b, s.a), v));
             least = fmin(least, weft_length(weft_subtract(on_ray, on_solid)));
         }
-        assert_float_equal(weft_snap_solid_distance(&s, p, q), least, 0.15);
+        assert_float_equal(weft_synthetic_solid_distance(&s, p, q), least, 0.15);
     }
 }
 
@@ -123,8 +123,9 @@ static void shadows_are_soft(void **state)
     double length = hypot(ball[0], ball[1]), x = ball[0] / length, y = ball[1] / length;
     int partial = 0;
     for (int i = 0; i < 60; i++) {
-        double at = length + 0.25 * i, lit = seen_at(&s, x * at, y * at) /
-                                             (weft_snap_scene_illuminance(&s.scene, weft_vec3_of(x * at, y * at, 0)).r);
+        double at = length + 0.25 * i,
+               lit = seen_at(&s, x * at, y * at) /
+                     (weft_synthetic_scene_illuminance(&s.scene, weft_vec3_of(x * at, y * at, 0)).r);
         partial += lit > 0.03 && lit < 0.24;
     }
     assert_true(partial >= 2);
@@ -141,20 +142,20 @@ static void both_ways_to_a_pixel_agree(void **state)
     s.shot.lens.height = 200;
     s.shot.lens.axis_x = 149.5;
     s.shot.lens.axis_y = 99.5;
-    for (int row = 0; row < WEFT_SNAP_CELLS_Y; row++)
-        for (int column = 0; column < WEFT_SNAP_CELLS_X; column++)
+    for (int row = 0; row < WEFT_SYNTHETIC_CELLS_Y; row++)
+        for (int column = 0; column < WEFT_SYNTHETIC_CELLS_X; column++)
             s.sheet.cell[row][column] = 0.85F;
     s.sheet.margin_mm = 2000;
     s.scene.lamp.at = weft_vec3_of(700, 500, 250);
     float *quick = calloc(300 * 200 * 3, sizeof *quick), *traced = calloc(300 * 200 * 3, sizeof *traced);
     assert_true(quick && traced);
-    weft_snap_render(&s.shot.lens, &s.shot.pose, &s.scene, 1, quick);
+    weft_synthetic_render(&s.shot.lens, &s.shot.pose, &s.scene, 1, quick);
     /* A ball just over the eye and over the lamp hides nothing, but comes near all that the eye sees. */
     weft_vec3 eye = weft_pose_camera_position(&s.shot.pose);
     s.scene.solid[0] =
-        (weft_snap_solid){.a = {eye.x, eye.y, eye.z + 60}, .b = {eye.x, eye.y, eye.z + 60}, .radius_mm = 59};
+        (weft_synthetic_solid){.a = {eye.x, eye.y, eye.z + 60}, .b = {eye.x, eye.y, eye.z + 60}, .radius_mm = 59};
     s.scene.solid_count = 1;
-    weft_snap_render(&s.shot.lens, &s.shot.pose, &s.scene, 1, traced);
+    weft_synthetic_render(&s.shot.lens, &s.shot.pose, &s.scene, 1, traced);
     int differ = 0, tried = 0;
     for (size_t i = 0; i < 300 * 200; i++) {
         differ += fabsf(traced[3 * i] - quick[3 * i]) > 0.04F * quick[3 * i];
@@ -238,12 +239,12 @@ static void a_ball_mirrors_the_lamp(void **state)
     weft_vec3 eye = weft_pose_camera_position(&s.shot.pose);
     float *radiance = calloc((size_t)s.shot.lens.width * (size_t)s.shot.lens.height * 3, sizeof *radiance);
     assert_non_null(radiance);
-    weft_snap_render(&s.shot.lens, &s.shot.pose, &s.scene, 5, radiance);
+    weft_synthetic_render(&s.shot.lens, &s.shot.pose, &s.scene, 5, radiance);
     for (int i = 0; i < WEFT_TARGET_BALL_COUNT; i++) {
         double place[2], expected[2], found[2];
         weft_target_ball(&s.sheet.target, i, place);
         weft_vec3 at = shortest_way(weft_vec3_of(place[0], place[1], 10), eye, s.scene.lamp.at);
-        assert_true(weft_snap_lens_project(&s.shot.lens, into_camera(&s.shot.pose, at), expected));
+        assert_true(weft_synthetic_lens_project(&s.shot.lens, into_camera(&s.shot.pose, at), expected));
         middle_of_light(&s, radiance, expected, found);
         assert_float_equal(found[0], expected[0], 0.3);
         assert_float_equal(found[1], expected[1], 0.3);
@@ -264,8 +265,8 @@ static void a_ball_mirrors_the_window(void **state)
     weft_vec3 beside_bars = weft_add(s.scene.window.middle, weft_scale(s.scene.window.across, 200));
     weft_vec3 at = shortest_way(middle, eye, beside_bars);
     weft_vec3 along = weft_unit(weft_subtract(at, eye));
-    double seen = weft_snap_scene_look(&s.scene, eye, along, &(weft_snap_chance){{0.5, 0.5}, 1, 0},
-                                       WEFT_SNAP_ALL_SOLIDS, WEFT_SNAP_ALL_SOLIDS)
+    double seen = weft_synthetic_scene_look(&s.scene, eye, along, &(weft_synthetic_chance){{0.5, 0.5}, 1, 0},
+                                            WEFT_SYNTHETIC_ALL_SOLIDS, WEFT_SYNTHETIC_ALL_SOLIDS)
                       .g;
     assert_float_equal(seen, 0.66 * 77, 1e-3);
 }

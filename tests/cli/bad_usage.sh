@@ -57,7 +57,7 @@ done <<'TABLE'
 1|'plan.csv' is neither|compress plan.csv -o out
 1|'folder' is a folder|compress folder -o out
 1|'good' is a folder|compress good -o out
-2|not 'many'|compress good.btf.h5 --layers many -o out
+2|not 'many'|compress good.btf.h5 --components many -o out
 2|not a regular file|compress good.btf.h5 -o /dev/full
 2|one too many|compress good.weft good.btf.h5 -o out
 2|would overwrite|compress good.btf.h5 -o good.btf.h5

@@ -18,7 +18,7 @@ echo 4 >card/image_size.txt
 for power in 3000,3000,3000 1,1,1; do
     echo "$power" >card/light_power.txt
     expect_ok import card -o card.btf.h5
-    expect_ok compress card.btf.h5 --layers 8 --hold-out off -o card.weft
+    expect_ok compress card.btf.h5 --components 8 --hold-out off -o card.weft
     cat out.log err.log >"said.${power%%,*}"
 done
 grep -q "no more than 235" said.1 || fail "what layers cannot say is not told: $(cat said.1)"

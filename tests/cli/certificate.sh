@@ -27,7 +27,7 @@ for set in grid between; do
         --resolution 20 --directions $set.csv --seed "$seed"
 done
 
-for model in "--lobes 1" "--layers 8"; do
+for model in "--lobes 1" "--components 8"; do
     # shellcheck disable=SC2086
     expect_says "certificate: 95 % of the pixels of images not seen" compress grid.btf.h5 -o grid.weft $model
     # shellcheck disable=SC2086

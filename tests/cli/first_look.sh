@@ -87,7 +87,7 @@ value=$(bright wide.png)
 # What is asked of lobes where layers draw is said to be idle, and whose errors the levels have.
 expect_ok render dark.weft --lobes-on none --size 60x40 --samples 1 -o idle.png
 grep -q "drawn by its layers: --lobes-on" out.log || fail "nobody says that --lobes-on changes nothing beside layers"
-expect_ok render dark.weft --layers 0 --lobes-on none --size 60x40 --samples 1 -o lobes.png
+expect_ok render dark.weft --components 0 --lobes-on none --size 60x40 --samples 1 -o lobes.png
 grep -q "drawn by its layers" out.log && fail "lobes that are drawn are said to be idle"
 expect_ok info dark.weft
 grep -q "fitted_level_0_diffuse_term" out.log || fail "info calls the diffuse term beside layers lobes: $(cat out.log)"

@@ -53,7 +53,7 @@ expect_completed() {
     passed=$((passed + 1))
 }
 expect_completed "calibrate capture colour compare compress" c
-expect_completed "--layers --levels --light-table --lobes" compress --l
+expect_completed "--components --levels --light-table --lobes" compress --l
 expect_completed "given off on" compress silk.btf.h5 --frames = ""
 expect_completed "off on" compress silk.btf.h5 --frames = o
 expect_completed "silk.btf.h5" compress silk.b

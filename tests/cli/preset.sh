@@ -78,13 +78,13 @@ PYTHON
     [ "$(ls -A | grep -c held-out)" = 0 ] || fail "compress $asked leaves files behind"
 done
 
-for option in "--lobes 2" "--table off" "--layers 8" "--tables pca:4" "--light-table on" "--rounding on" "--frames off" "--error 5" "--budget 1"; do
+for option in "--lobes 2" "--table off" "--components 8" "--tables pca:4" "--light-table on" "--rounding on" "--frames off" "--error 5" "--budget 1"; do
     # shellcheck disable=SC2086
     expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --preset small $option
 done
-expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --fps 20 --layers 8
+expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --fps 20 --components 8
 expect_error 2 "--fps" compress knit.btf.h5 -o none.weft --fps 0
 expect_error 2 "--preset" compress knit.btf.h5 -o none.weft --preset tiny
 expect_no_file none.weft
 expect_error 2 "--rounding is for layers" compress knit.btf.h5 -o none.weft --lobes 2 --rounding on
-expect_error 2 "--rounding is for layers" compress knit.btf.h5 -o none.weft --layers 0 --rounding on
+expect_error 2 "--rounding is for layers" compress knit.btf.h5 -o none.weft --components 0 --rounding on

@@ -66,7 +66,7 @@ assert -0.4 < f.attrs["plane_mm"] < 0 and f.attrs["height_levels"] >= 1
 PYTHON
 
 # What is compressed keeps the heights for its layers, where held-out photographs say so.
-expect_ok compress deep.btf.h5 -o deep.weft --layers 16
+expect_ok compress deep.btf.h5 -o deep.weft --components 16
 grep -q "; through the heights [.0-9]* %, without them [.0-9]* %" out.log || fail "nothing is said of the heights: $(cat out.log)"
 grep -q "they are left out" out.log && fail "the heights of a knit are left out: $(cat out.log)"
 expect_ok info deep.weft
@@ -74,7 +74,7 @@ grep -A1 "^heights:" out.log | grep -q "range_mm: \[-0" || fail "the material do
 expect_ok verify deep.weft
 expect_ok render deep.weft --mesh plane --repeat 2 --size 64x48 -o through.png
 expect_ok render deep.weft --mesh plane --repeat 2 --size 64x48 --relief off -o flat.png
-expect_ok compress deep.btf.h5 -o off.weft --layers 16 --heights off --hold-out off
+expect_ok compress deep.btf.h5 -o off.weft --components 16 --heights off --hold-out off
 expect_ok render off.weft --mesh plane --repeat 2 --size 64x48 -o off.png
 "$python" - <<'PYTHON' || fail "the heights are not what is switched"
 import struct
@@ -90,7 +90,7 @@ def pixels(path):
 assert pixels("off.png") == pixels("flat.png")
 assert pixels("through.png") != pixels("flat.png")
 PYTHON
-expect_ok compress before.btf.h5 -o before.weft --layers 16 --hold-out off
+expect_ok compress before.btf.h5 -o before.weft --components 16 --hold-out off
 expect_ok info before.weft
 grep -q "heights" out.log && fail "there are heights that nothing has found"
 

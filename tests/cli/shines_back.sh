@@ -44,7 +44,7 @@ PYTHON
 photograph tape .9
 expect_says "one lobe" compress tape.btf.h5 -o tape.weft
 cat out.log err.log | grep "one lobe"
-expect_ok compress tape.btf.h5 --layers 16 -o tape.weft
+expect_ok compress tape.btf.h5 --components 16 -o tape.weft
 ! grep -q "one lobe" out.log err.log || fail "who asks for layers is told of lobes"
 photograph matt 0
 expect_ok compress matt.btf.h5 -o matt.weft

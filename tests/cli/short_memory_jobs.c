@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/picture/image.h"
+#include "tests/compare/fixture.h"
 #include "tests/geometry/stitch_text.h"
-#include "tests/study/fixture.h"
 #include "tests/support/chart_picture.h"
 
 #include <math.h>
@@ -36,8 +36,8 @@ const short_memory_job short_memory_inputs[] = {
     {"wide",
      ALL_OR_NOTHING,
      1,
-     {"compress", "wide.btf.h5", "-o", "wide.weft", "--layers", "4", "--lobes", "1", "--hold-out", "off", "--tables",
-      "pca:2"}},
+     {"compress", "wide.btf.h5", "-o", "wide.weft", "--components", "4", "--lobes", "1", "--hold-out", "off",
+      "--tables", "pca:2"}},
     {"sparse", ALL_OR_NOTHING, 1, {"compress", "card.btf.h5", "-o", "card.weft"}},
     {"prediction", ALL_OR_NOTHING, 1, {"bard", "small.btf.h5", "-o", "small.bard.h5"}},
     {"photographed",
@@ -117,15 +117,15 @@ const short_memory_job short_memory_jobs[] = {
     {"compress-scattered",
      GOES_ON,
      8,
-     {"compress", IN "card.btf.h5", "-o", "card.weft", "--layers", "4", "--hold-out", "off", "--levels", "off"}},
+     {"compress", IN "card.btf.h5", "-o", "card.weft", "--components", "4", "--hold-out", "off", "--levels", "off"}},
     {"compress-given",
      GOES_ON,
      12,
      {"compress", IN "knit.btf.h5", "-o", "knit.weft", "--lobes", "1", "--frames", "given", "--hold-out", "off"}},
-    {"compress-layers",
+    {"compress-components",
      GOES_ON,
      12,
-     {"compress", IN "small.btf.h5", "-o", "small.weft", "--layers", "4", "--hold-out", "off"}},
+     {"compress", IN "small.btf.h5", "-o", "small.weft", "--components", "4", "--hold-out", "off"}},
     {"bard", ALL_OR_NOTHING, 1, {"bard", IN "small.btf.h5", "-o", "small.bard.h5"}},
     {"tile", ALL_OR_NOTHING, 4, {"tile", IN "waves.btf.h5", "-o", "tile.btf.h5", "--weave", IN "plain.wv"}},
     {"tile-blend", ALL_OR_NOTHING, 1, {"tile", IN "wide.weft", "--blend", "-o", "tile.weft"}},

@@ -4,8 +4,8 @@
  * umockdev-wrapper. */
 #include "btf/session/lens.h"
 #include "capture/laboratory/laboratory.h"
+#include "capture/preflight/preflight.h"
 #include "capture/virtual/virtual_rig.h"
-#include "study/preflight/preflight.h"
 #include "tests/capture/fake_controller.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"

@@ -21,7 +21,7 @@ awk 'BEGIN {
 
 wool="$assets/weaves/wool_gabardine.wv"
 weave="$assets/stitches/plain_weave.stitch"
-set -- --rig rig.json --plan plan.csv --texels 8 --layers 8 --queries 100 --paths 16
+set -- --rig rig.json --plan plan.csv --texels 8 --components 8 --queries 100 --paths 16
 expect_ok truth "$wool" "$weave" "$@" -o report --json --threads 1
 cp out.log events
 "$python" - <<'PYTHON' || fail "the results are not what they should be"
@@ -52,7 +52,7 @@ done
 # Refused in one line.
 expect_error 2 "needs one cloth or more" truth -o report
 expect_error 2 "needs one cloth or more" truth "$wool"
-expect_error 2 "--layers" truth "$wool" --layers 36 -o report
+expect_error 2 "--components" truth "$wool" --components 36 -o report
 expect_error 1 "absent.wv" truth absent.wv -o none
 expect_error 1 "rig.json" truth rig.json -o none
 expect_error 1 "absent.json" truth "$wool" --rig absent.json -o none

@@ -33,7 +33,7 @@ static double error_of(weft_dataset *dataset, const weft_compress_options *optio
 static void check_choices(weft_dataset *dataset, const char *name)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     double by_target, by_budget;
     options.levels = false;
     options.lobe_count = 3;
@@ -53,7 +53,7 @@ static void check(const adversary *one)
     assert_int_equal(adversary_write(one, "adversary.btf.h5", &limits), WEFT_OK);
     weft_dataset *dataset = synthetic_dataset_open("adversary.btf.h5");
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.levels = false;
     for (int way = 0; way < 4; way++) {
         double before = INFINITY, share;

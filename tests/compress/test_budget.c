@@ -61,7 +61,7 @@ static void a_larger_budget_is_kept_and_leaves_less_error(void **state)
     long size = 0;
     for (int i = 0; i < 5; i++) {
         weft_compress_options options = weft_compress_default_options();
-        options.layer_count = 0;
+        options.component_count = 0;
         options.budget_bytes = (uint64_t)budget[i];
         weft_material material = compress_file(&options);
         long bytes = written_size(&material);
@@ -79,7 +79,7 @@ static void without_bounds_the_error_is_at_most_that_of_the_whole_model(void **s
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_material whole = compress_file(&options);
     options.budget_bytes = 1000000;
     weft_material chosen = compress_file(&options);
@@ -95,7 +95,7 @@ static void the_error_that_is_said_is_that_of_the_stored_texels(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.budget_bytes = 13000;
     weft_material material = compress_file(&options);
     weft_table_directions directions;
@@ -130,7 +130,7 @@ static void white_texels_stay_diffuse_while_others_have_tables(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.budget_bytes = 14000;
     weft_material material = compress_file(&options);
     int tables = 0;
@@ -148,7 +148,7 @@ static void a_light_table_competes_too(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.budget_bytes = 1000000;
     options.levels = false;
     weft_material without = compress_file(&options);
@@ -168,7 +168,7 @@ static void impossible_budgets_are_refused(void **state)
     (void)state;
     weft_dataset *dataset = synthetic_dataset_open("budget.btf.h5");
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_material material;
     weft_error error = {0};
     options.budget_bytes = 1000;

@@ -62,7 +62,7 @@ static void levels_report_what_the_stored_texels_leave(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     write_fill("errors.btf.h5", 3, 2, fill_ward);
     weft_material material = compress_file("errors.btf.h5", &options, NULL);
     assert_int_equal(material.level_count, 3);
@@ -97,7 +97,7 @@ static void mip_texels_are_fits_of_the_mean_of_their_children(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     write_fill("children.btf.h5", 4, 4, fill_ward);
     write_fill("parents.btf.h5", 2, 2, fill_mean_ward);
     weft_material children = compress_file("children.btf.h5", &options, NULL);
@@ -139,7 +139,7 @@ static void number_of_threads_does_not_change_the_bytes(void **state)
     (void)state;
     int threads = omp_get_max_threads();
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     write_fill("threads.btf.h5", 5, 3, fill_ward);
     omp_set_num_threads(1);
     weft_material one = compress_file("threads.btf.h5", &options, NULL);
@@ -157,7 +157,7 @@ static void a_material_is_a_sixtieth_of_its_dataset(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     write_fill("size.btf.h5", 8, 8, fill_ward);
     weft_material material = compress_file("size.btf.h5", &options, NULL);
     assert_int_equal(weft_material_write("size.weft", &material, NULL), WEFT_OK);
@@ -184,7 +184,7 @@ static void masked_samples_are_counted_and_not_used(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.levels = false;
     weft_compress_report report;
     write_fill("whole.btf.h5", 2, 2, fill_ward);
@@ -259,7 +259,7 @@ static void views_that_do_not_see_a_texel_do_not_glare(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.levels = false;
     options.light_table = true;
     write_fill("hidden.btf.h5", 8, 1, fill_hidden);
@@ -295,7 +295,7 @@ static void a_dataset_without_valid_samples_is_refused_by_name(void **state)
     write_fill("missing.btf.h5", 1, 1, fill_missing);
     weft_dataset *dataset = synthetic_dataset_open("missing.btf.h5");
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.checkpoint_path = "missing.partial";
     weft_material material;
     weft_error error = {0};
@@ -319,7 +319,7 @@ static void images_held_out_have_no_influence(void **state)
     for (int image = 5; image < 6561; image += 9)
         held_out[image] = 1;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.held_out = held_out;
     weft_compress_report report;
     write_fill("clean.btf.h5", 2, 1, fill_ward);
@@ -340,7 +340,7 @@ static void every_model_gives_a_material_of_its_shape(void **state)
     double last = INFINITY;
     for (int lobes = 0; lobes <= 3; lobes++) {
         weft_compress_options options = weft_compress_default_options();
-        options.layer_count = 0;
+        options.component_count = 0;
         options.lobe_count = lobes;
         weft_material with = compress_file("models.btf.h5", &options, NULL);
         options.table = false;
@@ -372,7 +372,7 @@ static void both_conventions_of_values_give_the_same_material(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_dataset_layout layout = full_layout(1, 1);
     layout.values = WEFT_REFLECTANCE;
     synthetic_dataset_write("plain.btf.h5", &layout, fill_reflectance);
@@ -391,7 +391,7 @@ static void impossible_requests_are_refused(void **state)
     write_fill("refused.btf.h5", 1, 1, fill_ward);
     weft_dataset *dataset = synthetic_dataset_open("refused.btf.h5");
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     uint8_t held_out[6561];
     weft_material material;
     weft_error error = {0};
@@ -399,11 +399,11 @@ static void impossible_requests_are_refused(void **state)
     assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
     assert_non_null(strstr(error.message, "4 lobes"));
     options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.max_exponent = NAN;
     assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
     options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     memset(held_out, 1, sizeof held_out);
     options.held_out = held_out;
     assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);

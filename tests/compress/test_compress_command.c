@@ -173,7 +173,8 @@ static void options_that_change_nothing_are_named(void **state)
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --weights screen", 0, "--weights changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --frames off", 0, "--frames changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --max-exponent 9", 0, "--max-exponent changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --frames off", 0, "layers instead of lobes --frames changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --frames off", 0,
+                "components instead of lobes --frames changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --max-exponent 9", 0, "--max-exponent changes nothing");
     assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --hold-out off", said), 0);
     assert_null(strstr(said, "changes nothing"));
@@ -183,8 +184,8 @@ static void options_that_change_nothing_are_named(void **state)
     assert_null(strstr(said, "changes nothing"));
 }
 
-/* How many layers and lobes a material has that is made of `views` views of `lights` lights each. */
-static void expect_model(int views, int lights, const char *options, int layers, int lobes)
+/* How many components and lobes a material has that is made of `views` views of `lights` lights each. */
+static void expect_model(int views, int lights, const char *options, int components, int lobes)
 {
     char arguments[256];
     weft_material material;
@@ -193,13 +194,13 @@ static void expect_model(int views, int lights, const char *options, int layers,
              options);
     expect_weft(arguments, 0, "");
     assert_int_equal(weft_material_read("few.weft", &material, NULL), WEFT_OK);
-    int found = material.layers ? material.layers->layer_count : 0;
-    if (found != layers || material.lobe_count != lobes)
-        fail_msg("%d x %d images, '%s': %d layers, %d lobes", views, lights, options, found, material.lobe_count);
+    int found = material.components ? material.components->component_count : 0;
+    if (found != components || material.lobe_count != lobes)
+        fail_msg("%d x %d images, '%s': %d components, %d lobes", views, lights, options, found, material.lobe_count);
     weft_material_free(&material);
 }
 
-static void layers_are_the_default_and_their_number_is_that_of_the_photographs(void **state)
+static void components_are_the_default_and_their_number_is_that_of_the_photographs(void **state)
 {
     (void)state;
     expect_model(1, 19, "", 8, 0);
@@ -213,13 +214,13 @@ static void layers_are_the_default_and_their_number_is_that_of_the_photographs(v
 static void what_only_lobes_have_asks_for_lobes(void **state)
 {
     (void)state;
-    static const char *const options[] = {"--lobes 2",      "--table on",       "--layers 0",
+    static const char *const options[] = {"--lobes 2",      "--table on",       "--components 0",
                                           "--frames off",   "--max-exponent 9", "--light-table on",
                                           "--tables pca:2", "--error 50",       "--budget 1"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++)
         expect_model(4, 12, options[i], 0, 2);
-    expect_model(4, 12, "--layers 4", 4, 0);
-    expect_model(4, 12, "--layers 4 --lobes 1", 4, 1);
+    expect_model(4, 12, "--components 4", 4, 0);
+    expect_model(4, 12, "--components 4 --lobes 1", 4, 1);
 }
 
 /* Programs that read the file or the events are told what the material is, and what the errors of its levels are of. */
@@ -229,8 +230,9 @@ static void a_layered_material_says_that_it_is_one(void **state)
     static const struct {
         const char *options, *model, *errors_of;
     } expected[] = {
-        {"--layers 4", "\"model\":\"layers\"", "\"errors_of\":\"diffuse term beside the layers\""},
-        {"--layers 4 --lobes 1", "\"model\":\"layers beside lobes\"", "\"errors_of\":\"lobes beside the layers\""},
+        {"--components 4", "\"model\":\"components\"", "\"errors_of\":\"diffuse term beside the components\""},
+        {"--components 4 --lobes 1", "\"model\":\"components beside lobes\"",
+         "\"errors_of\":\"lobes beside the components\""},
         {"--lobes 1", "\"model\":\"lobes and view table\"", NULL},
     };
     write_few_images(4, 12);
@@ -286,7 +288,7 @@ int main(void)
         cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),
         cmocka_unit_test(wrong_usage_is_2),
         cmocka_unit_test(options_that_change_nothing_are_named),
-        cmocka_unit_test(layers_are_the_default_and_their_number_is_that_of_the_photographs),
+        cmocka_unit_test(components_are_the_default_and_their_number_is_that_of_the_photographs),
         cmocka_unit_test(what_only_lobes_have_asks_for_lobes),
         cmocka_unit_test(a_layered_material_says_that_it_is_one),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),

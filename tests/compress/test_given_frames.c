@@ -58,7 +58,7 @@ static void write_tilted(const char *path)
 static weft_material compress_with(weft_frame_choice frames)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_dataset *dataset;
     weft_material material;
     options.lobe_count = 1;

@@ -73,7 +73,7 @@ static weft_compress_report compress_to(const weft_dataset_layout *layout, weft_
     synthetic_dataset_write("weighed.btf.h5", layout, fill);
     weft_dataset *dataset = synthetic_dataset_open("weighed.btf.h5");
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_compress_report report;
     weft_error error = {0};
     options.weights = weights;

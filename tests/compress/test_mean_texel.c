@@ -1,7 +1,7 @@
 /* The mean over texels, and what is said of texels once it is imposed on them. */
 #include "tests/support/cmocka_all.h"
 
-#include "compress/layers/mean_texel.h"
+#include "compress/components/mean_texel.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ typedef struct cloth {
     weft_known known;
     weft_direction_pair pair[COUNT];
     double weight[COUNT], sample[SERIES * COUNT];
-    weft_layer_images images;
+    weft_component_images images;
     weft_vec3 light[ASKED], view[VIEWS];
     weft_training training;
     float vector[TEXELS * 3 * ASKED];
@@ -62,7 +62,7 @@ static void make(double tilt, cloth *c)
     c->known.pair = c->pair;
     c->known.weight = c->weight;
     c->known.sample = c->sample;
-    c->images = (weft_layer_images){.image_count = ASKED, .view_count = VIEWS, .light = c->light, .view = c->view};
+    c->images = (weft_component_images){.image_count = ASKED, .view_count = VIEWS, .light = c->light, .view = c->view};
     c->training =
         (weft_training){.texel_count = TEXELS, .length = 3 * ASKED, .image_count = ASKED, .vector = c->vector};
 }

@@ -99,7 +99,7 @@ static void reflectance_and_opacity_of_a_level_are_means_of_the_same_texels(void
     weft_material material;
     weft_table_directions directions;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_error error = {0};
     options.lobe_count = 0;
     write_holes("holes.btf.h5");

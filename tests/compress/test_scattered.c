@@ -3,8 +3,8 @@
 #include "tests/support/cmocka_all.h"
 
 #include "compress/compress.h"
+#include "reflectance/components/components.h"
 #include "reflectance/lafortune/lafortune.h"
-#include "reflectance/layers/layers.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
@@ -103,7 +103,7 @@ static void fill_truth(const weft_dataset_layout *layout, int x, int y, float *s
     }
 }
 
-static weft_material compress_list(const weft_dataset_layout *layout, synthetic_fill *fill, int layers,
+static weft_material compress_list(const weft_dataset_layout *layout, synthetic_fill *fill, int components,
                                    weft_compress_report *report)
 {
     weft_compress_options options = weft_compress_default_options();
@@ -111,7 +111,7 @@ static weft_material compress_list(const weft_dataset_layout *layout, synthetic_
     weft_error error = {0};
     synthetic_dataset_write(NAME, layout, fill);
     weft_dataset *dataset = synthetic_dataset_open(NAME);
-    options.layer_count = layers;
+    options.component_count = components;
     options.levels = false;
     if (weft_compress(dataset, &options, NULL, &material, report, &error) != WEFT_OK)
         fail_msg("%s", error.message);
@@ -123,23 +123,24 @@ static weft_material compress_list(const weft_dataset_layout *layout, synthetic_
 
 typedef struct asked {
     const weft_material *material;
-    weft_layer_maps maps;
+    weft_component_maps maps;
 } asked;
 
 static asked ask(const weft_material *material)
 {
     asked a = {.material = material};
-    if (material->layers)
-        assert_int_equal(weft_layer_maps_create(material->layers, &a.maps, NULL), WEFT_OK);
+    if (material->components)
+        assert_int_equal(weft_component_maps_create(material->components, &a.maps, NULL), WEFT_OK);
     return a;
 }
 
 static weft_rgb answer(const asked *a, int x, int y, weft_vec3 l, weft_vec3 v)
 {
-    float factor[3 * WEFT_LAYERS_MAX];
-    if (a->material->layers) {
-        weft_layer_factors(&a->maps, l, v, factor);
-        return weft_layers_texel(a->material->layers, a->material->layers->layer_count, factor, 0, x, y, l.z);
+    float factor[3 * WEFT_COMPONENTS_MAX];
+    if (a->material->components) {
+        weft_component_factors(&a->maps, l, v, factor);
+        return weft_components_texel(a->material->components, a->material->components->component_count, factor, 0, x, y,
+                                     l.z);
     }
     weft_rgba f = weft_material_texel(a->material, NULL, 0, x, y, l, v);
     return (weft_rgb){l.z * f.r, l.z * f.g, l.z * f.b};
@@ -161,16 +162,16 @@ static double error_of(const weft_material *material)
             energy += rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2];
         }
     }
-    weft_layer_maps_free(&a.maps);
+    weft_component_maps_free(&a.maps);
     return sqrt(square / energy);
 }
 
-static double error_with(int images, int views, weft_distance distance, int layers)
+static double error_with(int images, int views, weft_distance distance, int components)
 {
     weft_dataset_layout layout = list_of(images, views, distance);
-    weft_material material = compress_list(&layout, fill_truth, layers, NULL);
+    weft_material material = compress_list(&layout, fill_truth, components, NULL);
     double error = error_of(&material);
-    assert_true((material.layers != NULL) == (layers != 0));
+    assert_true((material.components != NULL) == (components != 0));
     weft_material_free(&material);
     weft_dataset_layout_free(&layout);
     return error;
@@ -182,12 +183,12 @@ static void more_photographs_say_more_and_more_than_lobes(void **state)
     static const int images[] = {5, 20, 60, 300};
     double before = 1;
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
-        double layers = error_with(images[i], images[i], WEFT_FAR, WEFT_LAYERS_AUTOMATIC);
+        double components = error_with(images[i], images[i], WEFT_FAR, WEFT_COMPONENTS_AUTOMATIC);
         double lobes = error_with(images[i], images[i], WEFT_FAR, 0);
-        print_message("%d photographs: %.3f by layers, %.3f by lobes\n", images[i], layers, lobes);
-        assert_true(layers < before);
-        assert_true(layers < lobes);
-        before = layers;
+        print_message("%d photographs: %.3f by components, %.3f by lobes\n", images[i], components, lobes);
+        assert_true(components < before);
+        assert_true(components < lobes);
+        before = components;
     }
 }
 
@@ -195,19 +196,19 @@ static void an_even_cloth_has_a_mean_that_is_known_better(void **state)
 {
     (void)state;
     even_cloth = true;
-    double layers = error_with(63, 63, WEFT_FAR, WEFT_LAYERS_AUTOMATIC);
+    double components = error_with(63, 63, WEFT_FAR, WEFT_COMPONENTS_AUTOMATIC);
     even_cloth = false;
-    print_message("63 photographs of an even cloth: %.3f\n", layers);
-    assert_true(layers < 0.15);
+    print_message("63 photographs of an even cloth: %.3f\n", components);
+    assert_true(components < 0.15);
 }
 
 static void near_photographs_are_seen_from_each_texel(void **state)
 {
     (void)state;
-    double layers = error_with(60, 60, WEFT_NEAR, WEFT_LAYERS_AUTOMATIC);
-    double far = error_with(60, 60, WEFT_FAR, WEFT_LAYERS_AUTOMATIC);
-    print_message("near: %.3f by layers; %.3f of far ones\n", layers, far);
-    assert_true(layers < 1.1 * far);
+    double components = error_with(60, 60, WEFT_NEAR, WEFT_COMPONENTS_AUTOMATIC);
+    double far = error_with(60, 60, WEFT_FAR, WEFT_COMPONENTS_AUTOMATIC);
+    print_message("near: %.3f by components; %.3f of far ones\n", components, far);
+    assert_true(components < 1.1 * far);
 }
 
 static void few_near_photographs_share_a_highlight(void **state)
@@ -215,10 +216,10 @@ static void few_near_photographs_share_a_highlight(void **state)
     (void)state;
     weft_dataset_layout layout = list_of(12, 12, WEFT_NEAR);
     weft_compress_report report;
-    weft_material material = compress_list(&layout, fill_truth, WEFT_LAYERS_AUTOMATIC, &report);
+    weft_material material = compress_list(&layout, fill_truth, WEFT_COMPONENTS_AUTOMATIC, &report);
     assert_int_equal(report.model, WEFT_COMPRESS_SPARSE);
     assert_int_equal(material.lobe_count, 1);
-    assert_null(material.layers);
+    assert_null(material.components);
     weft_material_free(&material);
     weft_dataset_layout_free(&layout);
 }
@@ -241,8 +242,8 @@ static void masked_samples_leave_no_trace(void **state)
     (void)state;
     for (int kind = 0; kind < 2; kind++) {
         weft_dataset_layout layout = list_of(60, 60, kind ? WEFT_NEAR : WEFT_FAR);
-        weft_material whole = compress_list(&layout, fill_truth, WEFT_LAYERS_AUTOMATIC, NULL);
-        weft_material masked = compress_list(&layout, fill_masked, WEFT_LAYERS_AUTOMATIC, NULL);
+        weft_material whole = compress_list(&layout, fill_truth, WEFT_COMPONENTS_AUTOMATIC, NULL);
+        weft_material masked = compress_list(&layout, fill_masked, WEFT_COMPONENTS_AUTOMATIC, NULL);
         double all = error_of(&whole), some = error_of(&masked);
         print_message("a quarter masked: %.3f, else %.3f\n", some, all);
         assert_true(some < 1.15 * all);
@@ -259,14 +260,15 @@ static void threads_leave_no_trace(void **state)
         weft_dataset_layout layout = list_of(20, 20, kind ? WEFT_NEAR : WEFT_FAR);
         int threads = omp_get_max_threads();
         omp_set_num_threads(1);
-        weft_material one = compress_list(&layout, fill_masked, WEFT_LAYERS_AUTOMATIC, NULL);
+        weft_material one = compress_list(&layout, fill_masked, WEFT_COMPONENTS_AUTOMATIC, NULL);
         omp_set_num_threads(3);
-        weft_material three = compress_list(&layout, fill_masked, WEFT_LAYERS_AUTOMATIC, NULL);
+        weft_material three = compress_list(&layout, fill_masked, WEFT_COMPONENTS_AUTOMATIC, NULL);
         omp_set_num_threads(threads);
-        size_t count = (size_t)one.layers->layer_count;
-        assert_memory_equal(one.layers->level[0].coefficient, three.layers->level[0].coefficient, SIDE * SIDE * count);
-        assert_memory_equal(one.layers->value, three.layers->value,
-                            3 * count * (size_t)one.layers->image_count * sizeof(weft_half));
+        size_t count = (size_t)one.components->component_count;
+        assert_memory_equal(one.components->level[0].coefficient, three.components->level[0].coefficient,
+                            SIDE * SIDE * count);
+        assert_memory_equal(one.components->value, three.components->value,
+                            3 * count * (size_t)one.components->image_count * sizeof(weft_half));
         weft_material_free(&one);
         weft_material_free(&three);
         weft_dataset_layout_free(&layout);
@@ -279,7 +281,7 @@ static void what_was_not_tried_is_not_told(void **state)
     (void)state;
     static const char list[] = "\"trial_relative_rmse\":[";
     weft_dataset_layout layout = list_of(20, 20, WEFT_FAR);
-    weft_material material = compress_list(&layout, fill_masked, WEFT_LAYERS_AUTOMATIC, NULL);
+    weft_material material = compress_list(&layout, fill_masked, WEFT_COMPONENTS_AUTOMATIC, NULL);
     const char *at = strstr(material.metadata, list);
     double error[2];
     int end = 0;
@@ -296,12 +298,12 @@ static void one_view_speaks_of_its_lights(void **state)
 {
     (void)state;
     weft_dataset_layout layout = list_of(40, 1, WEFT_FAR);
-    weft_material material = compress_list(&layout, fill_truth, WEFT_LAYERS_AUTOMATIC, NULL);
+    weft_material material = compress_list(&layout, fill_truth, WEFT_COMPONENTS_AUTOMATIC, NULL);
     weft_vec3 v = weft_unit(layout.view[0]);
     asked a = ask(&material);
     uint64_t seed = 4;
     double square = 0, energy = 0;
-    assert_int_equal(material.layers->view_count, 1);
+    assert_int_equal(material.components->view_count, 1);
     for (int i = 0; i < ASKED; i++) {
         weft_vec3 l = any_direction(&seed);
         double rgb[3];
@@ -312,7 +314,7 @@ static void one_view_speaks_of_its_lights(void **state)
     }
     print_message("40 lights on one view: %.3f\n", sqrt(square / energy));
     assert_true(sqrt(square / energy) < 0.15);
-    weft_layer_maps_free(&a.maps);
+    weft_component_maps_free(&a.maps);
     weft_material_free(&material);
     weft_dataset_layout_free(&layout);
 }
@@ -379,12 +381,12 @@ static void hold_to_limits(const char *what, synthetic_fill *fill, arrangement h
 {
     weft_dataset_layout layout = list_of(images, views, WEFT_FAR);
     arrange(&layout, how);
-    weft_material material = compress_list(&layout, fill, WEFT_LAYERS_AUTOMATIC, NULL);
+    weft_material material = compress_list(&layout, fill, WEFT_COMPONENTS_AUTOMATIC, NULL);
     /* A ceiling is rounded up by at most an eighth of a power of two. */
     double limit = WEFT_BRIGHTEST_MULTIPLE * brightest(&layout, fill) * 1.1 + 1e-6, most = 0;
     asked a = ask(&material);
     uint64_t seed = 99;
-    assert_non_null(material.layers);
+    assert_non_null(material.components);
     for (int i = 0; i < 20 * ASKED; i++) {
         weft_vec3 l = any_direction(&seed), v = any_direction(&seed);
         weft_rgb said = answer(&a, i % SIDE, i / SIDE % SIDE, l, v);
@@ -394,7 +396,7 @@ static void hold_to_limits(const char *what, synthetic_fill *fill, arrangement h
     }
     if (!(most <= limit))
         fail_msg("%s: %g above %g", what, most, limit);
-    weft_layer_maps_free(&a.maps);
+    weft_component_maps_free(&a.maps);
     weft_material_free(&material);
     weft_dataset_layout_free(&layout);
 }

@@ -56,7 +56,7 @@ static weft_material compress_file(const char *path, const uint8_t *held_out, we
 {
     weft_dataset *dataset = synthetic_dataset_open(path);
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_material material;
     weft_error error = {0};
     options.held_out = held_out;

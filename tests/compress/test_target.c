@@ -74,7 +74,7 @@ static weft_texel_model stored_model(const weft_material *material, int texel)
 static double error_of_model(const char *path, weft_texel_model model)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.lobe_count = model.lobe_count;
     options.table = model.table;
     weft_material material = compress_file(path, &options, NULL);
@@ -88,7 +88,7 @@ static int spared; /* texels whose T has fewer bits than 8 */
 static void check_smallest(double target)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     weft_fit_options whole = weft_fit_default_options();
     weft_compress_report report;
     options.target_error = target;
@@ -128,7 +128,7 @@ static void a_white_texel_is_diffuse_among_others(void **state)
 {
     (void)state;
     weft_compress_options options = weft_compress_default_options();
-    options.layer_count = 0;
+    options.component_count = 0;
     options.target_error = 0.02;
     write_fill("mixture.btf.h5", 4, 2, fill_mixture);
     weft_material material = compress_file("mixture.btf.h5", &options, NULL);
@@ -149,7 +149,7 @@ static void a_smaller_target_leaves_less_error_in_a_larger_file(void **state)
     write_fill("mixture.btf.h5", 4, 4, fill_mixture);
     for (int i = 0; i < 5; i++) {
         weft_compress_options options = weft_compress_default_options();
-        options.layer_count = 0;
+        options.component_count = 0;
         options.target_error = target[i];
         weft_material material = compress_file("mixture.btf.h5", &options, NULL);
         assert_int_equal(weft_material_write("mixture.weft", &material, NULL), WEFT_OK);
@@ -190,7 +190,7 @@ static void targets_that_mean_nothing_are_refused(void **state)
     weft_dataset *dataset = synthetic_dataset_open("target.btf.h5");
     for (int i = 0; i < 3; i++) {
         weft_compress_options options = weft_compress_default_options();
-        options.layer_count = 0;
+        options.component_count = 0;
         weft_material material;
         weft_error error = {0};
         options.target_error = target[i];

@@ -3,7 +3,7 @@
  * golden print FILE: what a file of Weft holds, decoded.
  * golden compare EXPECTED ACTUAL: whether two texts say the same. */
 #include "btf/file_kind.h"
-#include "study/inspect/inspect.h"
+#include "inspect/inspect.h"
 #include "tests/golden/compare.h"
 #include "tests/golden/print.h"
 

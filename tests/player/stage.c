@@ -216,9 +216,9 @@ stage_difference stage_compare(weft_player *player, weft_scene scene, weft_mode 
     return difference;
 }
 
-/* ---- Linear layers ---- */
+/* ---- Components ---- */
 
-enum { LAYER_DIRECTIONS = 37 };
+enum { COMPONENT_DIRECTIONS = 37 };
 
 static weft_vec3 direction_at(const float xyz[3])
 {
@@ -241,22 +241,22 @@ static void put_direction(int index, float *xyz)
     xyz[2] = (float)direction.z;
 }
 
-static void fill_image(weft_layers *layers, int view, int light)
+static void fill_image(weft_components *components, int view, int light)
 {
-    int image = view * LAYER_DIRECTIONS + light;
-    put_direction(light, layers->light + 3 * image);
-    for (int i = 0; i < 3 * layers->layer_count; i++)
-        layers->value[(size_t)image * 3 * (size_t)layers->layer_count + (size_t)i] =
-            weft_half_of_float((float)factor_of(i / 3, i % 3, direction_at(layers->light + 3 * image),
-                                                direction_at(layers->view + 3 * view)));
+    int image = view * COMPONENT_DIRECTIONS + light;
+    put_direction(light, components->light + 3 * image);
+    for (int i = 0; i < 3 * components->component_count; i++)
+        components->value[(size_t)image * 3 * (size_t)components->component_count + (size_t)i] =
+            weft_half_of_float((float)factor_of(i / 3, i % 3, direction_at(components->light + 3 * image),
+                                                direction_at(components->view + 3 * view)));
 }
 
 /* The last squares of the largest level are dark enough for their ceilings to be reached. Floors are so bright that
  * dark texels reach them; they differ by a step between squares, since a pixel on the edge of a hill may see either. */
-static void fill_layers_level(weft_layers_level *level, int layer_count)
+static void fill_layers_level(weft_components_level *level, int component_count)
 {
     int texels = level->width * level->height;
-    for (int i = 0; i < texels * layer_count; i++) {
+    for (int i = 0; i < texels * component_count; i++) {
         int layer = i / (4 * texels) * 4 + i % 4;
         level->coefficient[i] = (int8_t)(layer == 0 ? 90 + rand() % 30 : rand() % 61 - 30);
     }
@@ -267,33 +267,33 @@ static void fill_layers_level(weft_layers_level *level, int layer_count)
         level->floor[i] = (uint8_t)(172 + 4 * (i % 3) + i / 3 % 2);
 }
 
-void stage_layers(weft_layers_kind kind, int layer_count, weft_material *material)
+void stage_components(weft_components_kind kind, int component_count, weft_material *material)
 {
     weft_error error = {0};
-    weft_layers shape = {.kind = kind,
-                         .layer_count = layer_count,
-                         .view_count = LAYER_DIRECTIONS,
-                         .image_count = LAYER_DIRECTIONS * LAYER_DIRECTIONS,
-                         .light_side = 12,
-                         .view_side = 9,
-                         .light_smoothness = 1e-2f,
-                         .view_smoothness = 1e-2f,
-                         .least_cosine = 0.5f};
-    expect_ok(weft_layers_create(&shape, material->level[0].width, material->level[0].height, material->level_count,
-                                 &material->layers, &error),
+    weft_components shape = {.kind = kind,
+                             .component_count = component_count,
+                             .view_count = COMPONENT_DIRECTIONS,
+                             .image_count = COMPONENT_DIRECTIONS * COMPONENT_DIRECTIONS,
+                             .light_side = 12,
+                             .view_side = 9,
+                             .light_smoothness = 1e-2f,
+                             .view_smoothness = 1e-2f,
+                             .least_cosine = 0.5f};
+    expect_ok(weft_components_create(&shape, material->level[0].width, material->level[0].height, material->level_count,
+                                     &material->components, &error),
               &error);
-    material->has_layers = true;
-    for (int view = 0; view < LAYER_DIRECTIONS; view++) {
-        put_direction(view, material->layers->view + 3 * view);
-        material->layers->first[view + 1] = (uint32_t)(LAYER_DIRECTIONS * (view + 1));
-        for (int light = 0; light < LAYER_DIRECTIONS; light++)
-            fill_image(material->layers, view, light);
+    material->has_components = true;
+    for (int view = 0; view < COMPONENT_DIRECTIONS; view++) {
+        put_direction(view, material->components->view + 3 * view);
+        material->components->first[view + 1] = (uint32_t)(COMPONENT_DIRECTIONS * (view + 1));
+        for (int light = 0; light < COMPONENT_DIRECTIONS; light++)
+            fill_image(material->components, view, light);
     }
-    for (int k = 0; k < layer_count; k++)
-        material->layers->scale[k] = 0.35f / 127;
+    for (int k = 0; k < component_count; k++)
+        material->components->scale[k] = 0.35f / 127;
     srand(5);
     for (int k = 0; k < material->level_count; k++)
-        fill_layers_level(&material->layers->level[k], layer_count);
+        fill_layers_level(&material->components->level[k], component_count);
 }
 
 void stage_heights(bool hills, int levels, weft_material *material)

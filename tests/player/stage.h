@@ -23,8 +23,9 @@ double stage_uniform(uint64_t *state);
  * (0: none), with opacity below 1 here and there, and a light table over the last `lights`. All levels. */
 void stage_material(int width, int height, int lobes, int views, int lights, weft_material *material);
 
-/* Adds layers that are smooth in light and view, with coefficients at random, some of them held by their ceilings. */
-void stage_layers(weft_layers_kind kind, int layer_count, weft_material *material);
+/* Adds components that are smooth in light and view, with coefficients at random, some of them held by their ceilings.
+ */
+void stage_components(weft_components_kind kind, int component_count, weft_material *material);
 
 /* Gives it hills of 0.6 mm, two heights along each side of a texel, on the finest `levels`; or only a plane. */
 void stage_heights(bool hills, int levels, weft_material *material);

@@ -22,12 +22,12 @@ static weft_headless *open_context(weft_gl_profile profile)
     return headless;
 }
 
-enum { LOBES = 64, LAYERS = 16, OTHERS = 32 }; /* choices of a program of each kind */
+enum { LOBES = 64, COMPONENTS = 16, OTHERS = 32 }; /* choices of a program of each kind */
 
-/* The bits of `choice` say what the program does; those of the compressed material beyond LOBES draw layers. */
+/* The bits of `choice` say what the program does; those of the compressed material beyond LOBES draw components. */
 static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
 {
-    bool compressed = mode == WEFT_MODE_COMPRESSED, layered = compressed && choice >= LOBES;
+    bool compressed = mode == WEFT_MODE_COMPRESSED, factorised = compressed && choice >= LOBES;
     return (weft_program_kind){.mode = mode,
                                .plot = plot,
                                .stochastic = choice & 1,
@@ -35,10 +35,10 @@ static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
                                .one_light = choice & 4,
                                .noise = mode == WEFT_MODE_ANALYTIC && choice & 16,
                                .threads = mode == WEFT_MODE_ANALYTIC && choice & 8,
-                               .layer_groups = layered ? 4 : 0,
-                               .drawn_groups = layered ? 2 : 0,
-                               .incidence_power = layered && choice & 8 ? 1 + (choice >> 1 & 1) : 0,
-                               .opacity = layered && choice & 4,
+                               .component_groups = factorised ? 4 : 0,
+                               .drawn_groups = factorised ? 2 : 0,
+                               .incidence_power = factorised && choice & 8 ? 1 + (choice >> 1 & 1) : 0,
+                               .opacity = factorised && choice & 4,
                                .lobe_count = compressed && choice & 8 ? 3 : 0,
                                .view_table = compressed && choice & 16,
                                .light_table = compressed && choice & 32};
@@ -47,15 +47,15 @@ static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
 /* A program that draws shadows of cloth with holes. */
 static weft_program_kind casting_kind(int choice)
 {
-    bool is_raw = choice & 1, layered = !is_raw && choice & 2;
+    bool is_raw = choice & 1, factorised = !is_raw && choice & 2;
     return (weft_program_kind){.mode = is_raw ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED,
                                .casts = true,
                                .opacity = true,
                                .one_light = true,
                                .stochastic = choice & 4,
-                               .relief = (is_raw || layered) && choice & 8,
-                               .layer_groups = layered ? 4 : 0,
-                               .drawn_groups = layered,
+                               .relief = (is_raw || factorised) && choice & 8,
+                               .component_groups = factorised ? 4 : 0,
+                               .drawn_groups = factorised,
                                .view_table = true};
 }
 
@@ -85,7 +85,7 @@ static void build_every_program(void)
     int placed = 0;
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         /* Each choice with one of the plots: they do not know each other. */
-        for (int choice = 0; choice < (mode == WEFT_MODE_COMPRESSED ? LOBES + LAYERS : OTHERS); choice++) {
+        for (int choice = 0; choice < (mode == WEFT_MODE_COMPRESSED ? LOBES + COMPONENTS : OTHERS); choice++) {
             const weft_program_kind kind = kind_of((weft_mode)mode, (choice + choice / 3) % 3, choice);
             expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
             placed += expect_samplers_placed(program);

@@ -231,7 +231,7 @@ static void light_passes_as_far_as_cloth_is_open(void **state)
     set_material(player, &material);
     weft_image nothing = draw_background(player);
     the_lower_cloth_has_the_light_that_passes(player, WEFT_MODE_COMPRESSED, &nothing);
-    stage_layers(WEFT_LAYERS_OF_LIGHT, 4, &material);
+    stage_components(WEFT_COMPONENTS_OF_LIGHT, 4, &material);
     stage_heights(true, 1, &material);
     set_material(player, &material);
     the_lower_cloth_has_the_light_that_passes(player, WEFT_MODE_COMPRESSED, &nothing);

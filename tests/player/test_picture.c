@@ -133,19 +133,19 @@ static void take_bounds_away(weft_material *material)
 {
     for (int k = 0; k < material->level_count; k++) {
         size_t squares = weft_ceiling_count(material->level[k].width, material->level[k].height);
-        memset(material->layers->level[k].ceiling, 255, squares);
-        memset(material->layers->level[k].floor, 0, 3 * squares);
+        memset(material->components->level[k].ceiling, 255, squares);
+        memset(material->components->level[k].floor, 0, 3 * squares);
     }
 }
 
 /* With hills, if there are levels that are seen through them. */
-static void set_layers(void **state, int levels_through)
+static void set_components(void **state, int levels_through)
 {
     stage *s = *state;
     weft_error error = {0};
     weft_material material;
     stage_material(20, 13, 1, 37, 0, &material);
-    stage_layers(WEFT_LAYERS_OF_HALF_VECTOR, 8, &material);
+    stage_components(WEFT_COMPONENTS_OF_HALF_VECTOR, 8, &material);
     take_bounds_away(&material);
     if (levels_through > 0)
         stage_heights(true, levels_through, &material);
@@ -155,7 +155,7 @@ static void set_layers(void **state, int levels_through)
 
 static void stochastic_layers_have_the_exact_mean(void **state)
 {
-    set_layers(state, 0);
+    set_components(state, 0);
     expect_the_same_mean(state, scene_of(WEFT_MODE_COMPRESSED), 8, 0.013);
 }
 
@@ -163,7 +163,7 @@ static void stochastic_layers_have_the_exact_mean(void **state)
 static void stochastic_layers_through_heights_have_the_exact_mean(void **state)
 {
     weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
-    set_layers(state, 2);
+    set_components(state, 2);
     expect_the_same_mean(state, scene, 8, 0.008);
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 1.37;
@@ -400,14 +400,14 @@ static void the_window_shows_differences_as_saved_pictures_do(void **state)
     weft_canvas_free(&canvas);
 }
 
-static weft_image frame_of_layers(void **state, int layers, bool hurry)
+static weft_image frame_of_components(void **state, int components, bool hurry)
 {
     stage *s = *state;
     weft_error error = {0};
     weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
     weft_canvas canvas;
     weft_image image;
-    scene.layers = layers;
+    scene.components = components;
     scene.filter = hurry ? WEFT_FILTER_AUTO : WEFT_FILTER_STOCHASTIC;
     expect_ok(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
     weft_canvas_begin_frame(&canvas);
@@ -419,18 +419,18 @@ static weft_image frame_of_layers(void **state, int layers, bool hurry)
     return image;
 }
 
-static void a_frame_in_a_hurry_has_the_first_sixteen_layers(void **state)
+static void a_frame_in_a_hurry_has_the_first_sixteen_components(void **state)
 {
     stage *s = *state;
     weft_error error = {0};
     weft_material material;
     size_t size = sizeof(float) * 3 * PIXELS;
     stage_material(8, 8, 1, 0, 0, &material);
-    stage_layers(WEFT_LAYERS_OF_LIGHT, 32, &material);
+    stage_components(WEFT_COMPONENTS_OF_LIGHT, 32, &material);
     expect_ok(weft_player_set_material(s->player, &material, &error), &error);
     weft_material_free(&material);
-    weft_image hurried = frame_of_layers(state, 64, true), first = frame_of_layers(state, 16, false),
-               all = frame_of_layers(state, 64, false), few = frame_of_layers(state, 8, true);
+    weft_image hurried = frame_of_components(state, 64, true), first = frame_of_components(state, 16, false),
+               all = frame_of_components(state, 64, false), few = frame_of_components(state, 8, true);
     assert_memory_equal(hurried.pixels, first.pixels, size);
     assert_memory_not_equal(hurried.pixels, all.pixels, size);
     assert_memory_not_equal(hurried.pixels, few.pixels, size);
@@ -486,7 +486,7 @@ int main(void)
         cmocka_unit_test(differences_are_told_by_hue_and_darkness),
         cmocka_unit_test(false_colours_are_those_of_their_legends),
         cmocka_unit_test(the_window_shows_differences_as_saved_pictures_do),
-        cmocka_unit_test(a_frame_in_a_hurry_has_the_first_sixteen_layers),
+        cmocka_unit_test(a_frame_in_a_hurry_has_the_first_sixteen_components),
     };
     return cmocka_run_group_tests(tests, open_with_models, stage_close);
 }

@@ -2,12 +2,12 @@
  * difference below 4/255, of 8-bit sRGB values. */
 #include "stage.h"
 
+#include "evaluate/raw_btf.h"
 #include "player/draw/player_parts.h"
 #include "player/gl/context.h"
+#include "reflectance/components/components.h"
 #include "reflectance/lafortune/lafortune.h"
-#include "reflectance/layers/layers.h"
 #include "reflectance/microcylinder/file.h"
-#include "study/model/raw_btf.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,8 +28,8 @@ static weft_rgba lit(weft_rgb brdf_pi, weft_vec3 light, double opacity)
     return (weft_rgba){brdf_pi.r * cosine, brdf_pi.g * cosine, brdf_pi.b * cosine, opacity};
 }
 
-/* Between texels graphics cards keep 8 bits of the fraction; the software rasteriser keeps more. Maps of layers that
- * are divided by the square of a small incidence show it. */
+/* Between texels graphics cards keep 8 bits of the fraction; the software rasteriser keeps more. Maps of components
+ * that are divided by the square of a small incidence show it. */
 static bool filters_coarsely(void)
 {
     return !strstr(weft_gl_renderer(), "llvmpipe");
@@ -140,16 +140,16 @@ static void compressed_equals_c_with_a_light_table(void **state)
     compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
 }
 
-/* ---- Linear layers ---- */
+/* ---- Components ---- */
 
-typedef struct layer_model {
+typedef struct component_model {
     material_model lobes; /* which have the opacity */
-    weft_layer_maps maps;
+    weft_component_maps maps;
     weft_material_relief relief;
     int count;
-} layer_model;
+} component_model;
 
-static weft_vec3 nearest_of_table(const layer_model *model, int stored)
+static weft_vec3 nearest_of_table(const component_model *model, int stored)
 {
     const weft_material *material = &model->lobes.material;
     weft_vec3 nearest = vector((const float[]){0, 0, 1});
@@ -160,14 +160,14 @@ static weft_vec3 nearest_of_table(const layer_model *model, int stored)
     return nearest;
 }
 
-static weft_real opacity_at(const layer_model *model, weft_real level, weft_real u, weft_real v, weft_vec3 light,
+static weft_real opacity_at(const component_model *model, weft_real level, weft_real u, weft_real v, weft_vec3 light,
                             weft_vec3 view)
 {
     return weft_material_sample(&model->lobes.material, &model->lobes.directions, level, u, v, light, view).a;
 }
 
 /* What each stored view knows of it, in its direction as the table has it. */
-static weft_real opacity_through(const layer_model *model, const weft_surface_sample *at)
+static weft_real opacity_through(const component_model *model, const weft_surface_sample *at)
 {
     weft_vec3 light = vector(at->light), view = vector(at->view);
     weft_real level = (weft_real)at->level, u = (weft_real)at->u, v = (weft_real)at->v;
@@ -186,71 +186,72 @@ static weft_real opacity_through(const layer_model *model, const weft_surface_sa
     return sum;
 }
 
-static weft_rgba evaluate_layers(void *context, const weft_surface_sample *at)
+static weft_rgba evaluate_components(void *context, const weft_surface_sample *at)
 {
-    layer_model *model = context;
+    component_model *model = context;
     weft_rgb value =
-        weft_layers_sample_through(&model->maps, &model->relief, model->count, (weft_real)at->level, (weft_real)at->u,
-                                   (weft_real)at->v, vector(at->light), vector(at->view));
+        weft_components_sample_through(&model->maps, &model->relief, model->count, (weft_real)at->level,
+                                       (weft_real)at->u, (weft_real)at->v, vector(at->light), vector(at->view));
     return (weft_rgba){value.r, value.g, value.b, opacity_through(model, at)};
 }
 
 typedef enum surface_shape { FLAT, PLANE, HILLS } surface_shape;
 
-static stage_difference difference_of_layers(void **state, weft_layers_kind kind, int layer_count, int views,
-                                             surface_shape shape, weft_scene scene)
+static stage_difference difference_of_components(void **state, weft_components_kind kind, int component_count,
+                                                 int views, surface_shape shape, weft_scene scene)
 {
     stage *s = *state;
     weft_error error = {0};
-    layer_model model = {.count = scene.layers < layer_count ? (scene.layers + 3) / 4 * 4 : layer_count};
+    component_model model = {.count =
+                                 scene.components < component_count ? (scene.components + 3) / 4 * 4 : component_count};
     weft_material *material = &model.lobes.material;
     stage_material(20, 13, 1, views, 0, material);
-    stage_layers(kind, layer_count, material);
+    stage_components(kind, component_count, material);
     if (shape != FLAT)
         stage_heights(shape == HILLS, 2, material);
     expect_ok(weft_table_directions_create(material, &model.lobes.directions, &error), &error);
-    expect_ok(weft_layer_maps_create(material->layers, &model.maps, &error), &error);
-    expect_ok(weft_layer_maps_keep_views(&model.maps, &error), &error);
+    expect_ok(weft_component_maps_create(material->components, &model.maps, &error), &error);
+    expect_ok(weft_component_maps_keep_views(&model.maps, &error), &error);
     expect_ok(weft_material_relief_create(material, &model.relief, &error), &error);
     expect_ok(weft_player_set_material(s->player, material, &error), &error);
     stage_difference result =
-        stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_layers, &model);
+        stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_components, &model);
     weft_material_relief_free(&model.relief);
-    weft_layer_maps_free(&model.maps);
+    weft_component_maps_free(&model.maps);
     weft_table_directions_free(&model.lobes.directions);
     weft_material_free(material);
     return result;
 }
 
-static void compare_layers(void **state, const char *what, weft_layers_kind kind, int layer_count, int views,
-                           weft_scene scene)
+static void compare_components(void **state, const char *what, weft_components_kind kind, int component_count,
+                               int views, weft_scene scene)
 {
-    expect_small(what, difference_of_layers(state, kind, layer_count, views, FLAT, scene));
+    expect_small(what, difference_of_components(state, kind, component_count, views, FLAT, scene));
 }
 
-static void layers_equal_c(void **state)
+static void components_equal_c(void **state)
 {
     weft_scene scene = weft_scene_default();
-    compare_layers(state, "8 layers over the light", WEFT_LAYERS_OF_LIGHT, 8, 0, scene);
-    compare_layers(state, "16 layers over the half vector", WEFT_LAYERS_OF_HALF_VECTOR, 16, 0, scene);
+    compare_components(state, "8 components over the light", WEFT_COMPONENTS_OF_LIGHT, 8, 0, scene);
+    compare_components(state, "16 components over the half vector", WEFT_COMPONENTS_OF_HALF_VECTOR, 16, 0, scene);
     scene.light[0].direction = (weft_angles){weft_rad_of_deg(80), weft_rad_of_deg(100)};
-    compare_layers(state, "4 layers under grazing light", WEFT_LAYERS_OF_HALF_VECTOR, 4, 0, scene);
-    compare_layers(state, "4 layers, squared incidence", WEFT_LAYERS_OF_HALF_VECTOR_SQUARED, 4, 0, scene);
+    compare_components(state, "4 components under grazing light", WEFT_COMPONENTS_OF_HALF_VECTOR, 4, 0, scene);
+    compare_components(state, "4 components, squared incidence", WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED, 4, 0, scene);
 }
 
-static void layers_equal_c_between_levels(void **state)
+static void components_equal_c_between_levels(void **state)
 {
     weft_scene scene = weft_scene_default();
     scene.repeat = 37;
-    compare_layers(state, "layers, minified", WEFT_LAYERS_OF_LIGHT, 8, 0, scene);
+    compare_components(state, "components, minified", WEFT_COMPONENTS_OF_LIGHT, 8, 0, scene);
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 1.37;
-    compare_layers(state, "layers, level 1.37", WEFT_LAYERS_OF_HALF_VECTOR, 8, 0, scene);
+    compare_components(state, "components, level 1.37", WEFT_COMPONENTS_OF_HALF_VECTOR, 8, 0, scene);
 }
 
-static void layers_through_holes_equal_c(void **state)
+static void components_through_holes_equal_c(void **state)
 {
-    compare_layers(state, "layers with opacity", WEFT_LAYERS_OF_HALF_VECTOR, 8, 37, weft_scene_default());
+    compare_components(state, "components with opacity", WEFT_COMPONENTS_OF_HALF_VECTOR, 8, 37, weft_scene_default());
 }
 
 /* A pixel on the edge of a hill may see either side of it, as single precision has it. */
@@ -262,16 +263,18 @@ static void expect_alike(const char *what, stage_difference difference)
     assert_true(difference.rmse < 0.2);
 }
 
-static void layers_through_heights_equal_c(void **state)
+static void components_through_heights_equal_c(void **state)
 {
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
-    expect_alike("layers through hills", difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
-    expect_alike("layers through a plane", difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR, 8, 0, PLANE, scene));
-    expect_alike("layers through hills, squared incidence",
-                 difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR_SQUARED, 4, 0, HILLS, scene));
-    expect_alike("layers with opacity through hills",
-                 difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR, 4, 37, HILLS, scene));
+    expect_alike("components through hills",
+                 difference_of_components(state, WEFT_COMPONENTS_OF_LIGHT, 8, 0, HILLS, scene));
+    expect_alike("components through a plane",
+                 difference_of_components(state, WEFT_COMPONENTS_OF_HALF_VECTOR, 8, 0, PLANE, scene));
+    expect_alike("components through hills, squared incidence",
+                 difference_of_components(state, WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED, 4, 0, HILLS, scene));
+    expect_alike("components with opacity through hills",
+                 difference_of_components(state, WEFT_COMPONENTS_OF_HALF_VECTOR, 4, 37, HILLS, scene));
 }
 
 /* Level 1 is seen through heights, level 2 is not. */
@@ -280,10 +283,10 @@ static void heights_count_on_their_levels(void **state)
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 1.37;
-    expect_alike("layers through hills, level 1.37",
-                 difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
+    expect_alike("components through hills, level 1.37",
+                 difference_of_components(state, WEFT_COMPONENTS_OF_LIGHT, 8, 0, HILLS, scene));
     scene.level = 2;
-    expect_alike("layers, level 2", difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
+    expect_alike("components, level 2", difference_of_components(state, WEFT_COMPONENTS_OF_LIGHT, 8, 0, HILLS, scene));
 }
 
 /* So much, at least, the tests above would see were the heights not used. */
@@ -292,16 +295,16 @@ static void heights_of_layers_that_are_switched_off_are_not_used(void **state)
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
     scene.relief = false;
-    stage_difference off = difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene);
-    printf("heights of layers against none: RMSE %.4f/255\n", off.rmse);
+    stage_difference off = difference_of_components(state, WEFT_COMPONENTS_OF_LIGHT, 8, 0, HILLS, scene);
+    printf("heights of components against none: RMSE %.4f/255\n", off.rmse);
     assert_true(off.rmse > 3);
 }
 
 static void the_first_layers_alone_equal_c(void **state)
 {
     weft_scene scene = weft_scene_default();
-    scene.layers = 8;
-    compare_layers(state, "8 of 16 layers", WEFT_LAYERS_OF_LIGHT, 16, 0, scene);
+    scene.components = 8;
+    compare_components(state, "8 of 16 components", WEFT_COMPONENTS_OF_LIGHT, 16, 0, scene);
 }
 
 /* Half floats below 6.1e-5 are subnormal. */
@@ -672,10 +675,10 @@ int main(void)
         cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
         cmocka_unit_test(compressed_equals_c_with_a_light_table),
         cmocka_unit_test(compressed_equals_c_in_the_dark),
-        cmocka_unit_test(layers_equal_c),
-        cmocka_unit_test(layers_equal_c_between_levels),
-        cmocka_unit_test(layers_through_holes_equal_c),
-        cmocka_unit_test(layers_through_heights_equal_c),
+        cmocka_unit_test(components_equal_c),
+        cmocka_unit_test(components_equal_c_between_levels),
+        cmocka_unit_test(components_through_holes_equal_c),
+        cmocka_unit_test(components_through_heights_equal_c),
         cmocka_unit_test(heights_count_on_their_levels),
         cmocka_unit_test(heights_of_layers_that_are_switched_off_are_not_used),
         cmocka_unit_test(the_first_layers_alone_equal_c),

@@ -1,7 +1,7 @@
 /* What is too dark to be read is not used: of the paper, and of the sample. */
 #include "btf/dataset/dataset.h"
-#include "registration/hand/certainty.h"
 #include "registration/lamp/paper.h"
+#include "registration/photographs/certainty.h"
 
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
@@ -81,8 +81,8 @@ static void dark_texels_are_masked_one_by_one(void **state)
     const float texel[3 * TEXELS] = {9, 9, 9, 11, 2, 1, 1, 2, 11, 9, 9, 9, 500, 400, 300, 9.9f, 0, -1};
     uint8_t mask[TEXELS] = {0, 0, 0, WEFT_MASK_MISSING, WEFT_MASK_SATURATED, 0};
     const uint8_t expected[TEXELS] = {WEFT_MASK_DARK, 0, 0, WEFT_MASK_MISSING, WEFT_MASK_SATURATED, WEFT_MASK_DARK};
-    weft_hand_photograph photograph = {.dark_texels = 77, .clipped_texels = 77};
-    weft_hand_mask_dark(texel, 10, TEXELS, mask, &photograph);
+    weft_photographs_photograph photograph = {.dark_texels = 77, .clipped_texels = 77};
+    weft_photographs_mask_dark(texel, 10, TEXELS, mask, &photograph);
     assert_memory_equal(mask, expected, TEXELS);
     assert_int_equal(photograph.dark_texels, 2);
     assert_int_equal(photograph.clipped_texels, 1);

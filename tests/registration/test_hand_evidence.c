@@ -220,9 +220,9 @@ static void a_highlight_near_the_rim_is_known_less_well(void **state)
 /* ---- Lists ---- */
 
 /* A camera that looks straight down, its x along the plate's x, stands as Exif orientation says. */
-static weft_hand_photograph photograph_from_above(char *name, int orientation)
+static weft_photographs_photograph photograph_from_above(char *name, int orientation)
 {
-    weft_hand_photograph p = {.name = name, .exif = {.orientation = orientation}};
+    weft_photographs_photograph p = {.name = name, .exif = {.orientation = orientation}};
     p.pose = (weft_pose){{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}, {0, 0, 500}};
     return p;
 }
@@ -245,7 +245,7 @@ static void an_lp_file_counts_in_the_picture_as_it_is_shown(void **state)
         double x, y;
     } expected[] = {{1, 0.6, 0.48}, {3, -0.6, -0.48}, {6, -0.48, 0.6}, {8, 0.48, -0.6}};
     for (size_t i = 0; i < 4; i++) {
-        weft_hand_photograph p = photograph_from_above(name, expected[i].orientation);
+        weft_photographs_photograph p = photograph_from_above(name, expected[i].orientation);
         weft_listed_lamp lamp = weft_listed_lamp_of(&list, &p);
         assert_true(lamp.found);
         assert_near(lamp.light.x, expected[i].x, 1e-12);
@@ -254,14 +254,14 @@ static void an_lp_file_counts_in_the_picture_as_it_is_shown(void **state)
         assert_near(lamp.deviation_rad, WEFT_PI / 180, 1e-12);
     }
     list.of_pictures = false;
-    weft_hand_photograph p = photograph_from_above(name, 6);
+    weft_photographs_photograph p = photograph_from_above(name, 6);
     assert_near(weft_listed_lamp_of(&list, &p).light.x, 0.6, 1e-12);
 }
 
 enum { ROWS = 6 };
 
 /* Photographs whose lamps lie as the rows say, seen from around. */
-static void make_rows(weft_listed_light row[ROWS], weft_hand_photograph p[ROWS])
+static void make_rows(weft_listed_light row[ROWS], weft_photographs_photograph p[ROWS])
 {
     static char name[ROWS][8];
     for (int i = 0; i < ROWS; i++) {
@@ -274,7 +274,8 @@ static void make_rows(weft_listed_light row[ROWS], weft_hand_photograph p[ROWS])
     }
 }
 
-static void expect_notes(const weft_light_list *list, const weft_hand_photograph *p, int count, const char *first)
+static void expect_notes(const weft_light_list *list, const weft_photographs_photograph *p, int count,
+                         const char *first)
 {
     weft_lines notes = {0};
     assert_int_equal(weft_listed_compare(list, p, ROWS, &notes, NULL), WEFT_OK);
@@ -287,7 +288,7 @@ static void rows_that_contradict_the_photographs_are_named(void **state)
 {
     (void)state;
     weft_listed_light row[ROWS];
-    weft_hand_photograph p[ROWS];
+    weft_photographs_photograph p[ROWS];
     make_rows(row, p);
     weft_light_list list = list_of(row, ROWS, true);
     expect_notes(&list, p, 0, "");
@@ -308,7 +309,7 @@ static void steps_of_a_turntable_count_from_anywhere(void **state)
 {
     (void)state;
     weft_listed_light row[ROWS];
-    weft_hand_photograph p[ROWS];
+    weft_photographs_photograph p[ROWS];
     make_rows(row, p);
     weft_light_list list = list_of(row, ROWS, false);
     for (int i = 0; i < ROWS; i++) {
@@ -326,7 +327,7 @@ static void a_list_of_something_else_is_refused(void **state)
 {
     (void)state;
     weft_listed_light row[ROWS];
-    weft_hand_photograph p[ROWS];
+    weft_photographs_photograph p[ROWS];
     make_rows(row, p);
     weft_light_list list = list_of(row, ROWS, true);
     weft_error error = {0};

@@ -1,6 +1,6 @@
 /* What the pin and the balls hide of the sample, against many points along the way to the lamp and the camera. */
 #include "btf/dataset/dataset.h"
-#include "registration/hand/hidden.h"
+#include "registration/photographs/hidden.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ static weft_vec3 direction_of(double tilt_deg, double azimuth_deg, double distan
 }
 
 /* How near a point comes to the pin, whose head of 1.5 mm ends at its height, or to a ball. */
-static double nearness(const weft_hand_settings *settings, weft_vec3 at)
+static double nearness(const weft_photographs_settings *settings, weft_vec3 at)
 {
     double place[2], least = INFINITY;
     if (settings->pin_height_mm > 0) {
@@ -37,7 +37,8 @@ static double nearness(const weft_hand_settings *settings, weft_vec3 at)
 }
 
 /* The way comes so near to a body, `soft` of the way counted as near. */
-static bool passes_near(const weft_hand_settings *settings, weft_vec3 texel, weft_vec3 to, double soft, double margin)
+static bool passes_near(const weft_photographs_settings *settings, weft_vec3 texel, weft_vec3 to, double soft,
+                        double margin)
 {
     weft_vec3 way = weft_subtract(to, texel);
     double end = fmin(1, HIGHEST_MM / to.z);
@@ -49,9 +50,9 @@ static bool passes_near(const weft_hand_settings *settings, weft_vec3 texel, wef
     return false;
 }
 
-static weft_hand_settings settings_of(double pin_mm, double ball_mm)
+static weft_photographs_settings settings_of(double pin_mm, double ball_mm)
 {
-    weft_hand_settings settings = weft_hand_defaults();
+    weft_photographs_settings settings = weft_photographs_defaults();
     settings.width = SIDE;
     settings.height = SIDE;
     settings.pin_height_mm = pin_mm;
@@ -60,11 +61,11 @@ static weft_hand_settings settings_of(double pin_mm, double ball_mm)
 }
 
 /* Counts the texels that are masked; each must be hidden, and each that is hidden well must be masked. */
-static long expect_as_along_the_way(const weft_hand_settings *settings, weft_vec3 lamp, weft_vec3 eye)
+static long expect_as_along_the_way(const weft_photographs_settings *settings, weft_vec3 lamp, weft_vec3 eye)
 {
     uint8_t mask[SIDE * SIDE] = {0};
     long hidden, masked = 0;
-    weft_hand_mask_hidden(settings, lamp, eye, mask, &hidden);
+    weft_photographs_mask_hidden(settings, lamp, eye, mask, &hidden);
     for (int i = 0; i < SIDE * SIDE; i++) {
         double side = settings->target.opening_mm;
         weft_vec3 texel =
@@ -82,7 +83,7 @@ static long expect_as_along_the_way(const weft_hand_settings *settings, weft_vec
 static void what_is_hidden_is_masked(void **state)
 {
     (void)state;
-    weft_hand_settings both = settings_of(30, 20), pin = settings_of(30, 0), balls = settings_of(0, 20);
+    weft_photographs_settings both = settings_of(30, 20), pin = settings_of(30, 0), balls = settings_of(0, 20);
     long by_pin = 0, by_balls = 0, from_eye = 0;
     for (int azimuth = 0; azimuth < 360; azimuth += 15) {
         weft_vec3 low = direction_of(76, azimuth, 600), high = direction_of(20, azimuth, 600);
@@ -99,7 +100,7 @@ static void what_is_hidden_is_masked(void **state)
 static void what_does_not_stand_there_hides_nothing(void **state)
 {
     (void)state;
-    weft_hand_settings none = settings_of(0, 0);
+    weft_photographs_settings none = settings_of(0, 0);
     for (int azimuth = 0; azimuth < 360; azimuth += 15)
         assert_int_equal(expect_as_along_the_way(&none, direction_of(80, azimuth, 600), direction_of(80, azimuth, 600)),
                          0);
@@ -108,16 +109,16 @@ static void what_does_not_stand_there_hides_nothing(void **state)
 static void what_was_masked_stays_and_is_not_counted_again(void **state)
 {
     (void)state;
-    weft_hand_settings pin = settings_of(30, 0);
+    weft_photographs_settings pin = settings_of(30, 0);
     double place[2];
     weft_target_pin(&pin.target, place);
     weft_vec3 lamp = direction_of(78, atan2(place[1], place[0]) * 180 / M_PI, 600);
     uint8_t mask[SIDE * SIDE];
     long first, again;
     memset(mask, 0, sizeof mask);
-    weft_hand_mask_hidden(&pin, lamp, direction_of(0, 0, 600), mask, &first);
+    weft_photographs_mask_hidden(&pin, lamp, direction_of(0, 0, 600), mask, &first);
     memset(mask, WEFT_MASK_SATURATED, sizeof mask);
-    weft_hand_mask_hidden(&pin, lamp, direction_of(0, 0, 600), mask, &again);
+    weft_photographs_mask_hidden(&pin, lamp, direction_of(0, 0, 600), mask, &again);
     long both = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         both += mask[i] == (WEFT_MASK_SATURATED | WEFT_MASK_MISSING);

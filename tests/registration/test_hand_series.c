@@ -1,8 +1,8 @@
 /* Photographs of one view and one lamp that differ in exposure. The camera's curve is that of film on a screen, in
  * whole numbers of 8 bits; the room under test bends sRGB by a polynomial. */
-#include "registration/hand/twin.h"
 #include "registration/lamp/exposure.h"
 #include "registration/lamp/lamp.h"
+#include "registration/photographs/twin.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
@@ -277,19 +277,19 @@ static void round_numbers_are_thirds_of_a_stop(void **state)
 static void the_darker_of_a_pair_is_no_image(void **state)
 {
     (void)state;
-    weft_hand_photograph photograph[5] = {
+    weft_photographs_photograph photograph[5] = {
         {.name = "a"}, {.name = "b"}, {.name = "c"}, {.name = "d", .remark = "blurred"}, {.name = "e"}};
     weft_exposure_pair pair[] = {{2, 0, 1}, {0, 4, 1}, {3, 1, 1}};
     weft_hand hand = {.count = 5, .photograph = photograph, .pair_count = 3, .pair = pair};
-    weft_hand_leave_out_twins(&hand);
+    weft_photographs_leave_out_twins(&hand);
     const bool used[] = {false, true, true, false, false};
     for (int i = 0; i < 5; i++)
-        assert_int_equal(weft_hand_used(&photograph[i]), used[i]);
+        assert_int_equal(weft_photographs_used(&photograph[i]), used[i]);
     assert_true(photograph[0].is_twin && photograph[4].is_twin && !photograph[3].is_twin && !photograph[1].is_twin);
     assert_non_null(strstr(photograph[4].remark, "it is 'a', darker"));
-    assert_int_equal(weft_hand_darker_twin(&hand, 2), 0);
-    assert_int_equal(weft_hand_darker_twin(&hand, 0), 4);
-    assert_int_equal(weft_hand_darker_twin(&hand, 4), -1);
+    assert_int_equal(weft_photographs_darker_twin(&hand, 2), 0);
+    assert_int_equal(weft_photographs_darker_twin(&hand, 0), 4);
+    assert_int_equal(weft_photographs_darker_twin(&hand, 4), -1);
 }
 
 static void the_darker_of_a_pair_tells_what_is_clipped(void **state)
@@ -300,7 +300,7 @@ static void the_darker_of_a_pair_tells_what_is_clipped(void **state)
     uint8_t mask[] = {0, CLIPPED, CLIPPED, DARK, BOTH};
     const weft_half darker[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     weft_half texel[15] = {0};
-    assert_int_equal(weft_hand_fill_saturated(darker, darker_mask, 5, texel, mask), 1);
+    assert_int_equal(weft_photographs_fill_saturated(darker, darker_mask, 5, texel, mask), 1);
     const uint8_t mask_after[] = {0, 0, CLIPPED, DARK, BOTH};
     const weft_half after[15] = {0, 0, 0, 4, 5, 6};
     assert_memory_equal(mask, mask_after, sizeof mask);

@@ -1,6 +1,6 @@
 /* Markers that a pin or a shadow crosses, among those of photographs from a hand. The corners are made here from a lens
  * that is known. */
-#include "registration/hand/lens.h"
+#include "registration/photographs/lens.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
@@ -32,10 +32,10 @@ static weft_pixel seen_at(const weft_camera *lens, const weft_pose *pose, weft_v
 }
 
 /* The sheet rises towards the left and the right, by `bend_mm` at 100 mm from the middle. */
-static weft_hand_photograph photograph_of(const weft_camera *lens, int number, double bend_mm)
+static weft_photographs_photograph photograph_of(const weft_camera *lens, int number, double bend_mm)
 {
     weft_target target = weft_target_printed(opening_mm);
-    weft_hand_photograph p = {0};
+    weft_photographs_photograph p = {0};
     weft_angles view = {weft_rad_of_deg(6.5 * number), weft_rad_of_deg(77.0 * number)};
     p.pose = weft_pose_of_view(view, 430);
     p.marker_count = WEFT_SHEET_MARKER_COUNT;
@@ -54,20 +54,20 @@ static weft_hand_photograph photograph_of(const weft_camera *lens, int number, d
     return p;
 }
 
-static void photograph_all(weft_hand_photograph photograph[PHOTOGRAPHS])
+static void photograph_all(weft_photographs_photograph photograph[PHOTOGRAPHS])
 {
     for (int i = 0; i < PHOTOGRAPHS; i++)
         photograph[i] = photograph_of(&camera, i, 0);
 }
 
 /* Two corners of a marker are found beside an edge that is none of it. */
-static void cross(weft_hand_photograph *photograph, int marker, double by_px)
+static void cross(weft_photographs_photograph *photograph, int marker, double by_px)
 {
     photograph->seen[4 * marker + 1][0] += by_px;
     photograph->seen[4 * marker + 2][0] += 0.6 * by_px;
 }
 
-static void estimate(weft_hand_photograph photograph[PHOTOGRAPHS], weft_lens_estimate *lens)
+static void estimate(weft_photographs_photograph photograph[PHOTOGRAPHS], weft_lens_estimate *lens)
 {
     weft_error error = {0};
     if (weft_lens_estimate_from(photograph, PHOTOGRAPHS, WIDTH, HEIGHT, NULL, lens, &error) != WEFT_OK)
@@ -75,9 +75,9 @@ static void estimate(weft_hand_photograph photograph[PHOTOGRAPHS], weft_lens_est
     print_message("focal length %.2f, %.3f pixels off\n", lens->camera.fx, lens->rms_px);
 }
 
-static double view_error_deg(const weft_hand_photograph *found, int number)
+static double view_error_deg(const weft_photographs_photograph *found, int number)
 {
-    weft_hand_photograph truth = photograph_of(&camera, number, 0);
+    weft_photographs_photograph truth = photograph_of(&camera, number, 0);
     weft_vec3 a = weft_unit(weft_pose_camera_position(&found->pose)),
               b = weft_unit(weft_pose_camera_position(&truth.pose));
     return weft_deg_of_rad(acos(fmin(1, weft_dot(a, b))));
@@ -86,7 +86,7 @@ static double view_error_deg(const weft_hand_photograph *found, int number)
 static void a_crossed_marker_costs_no_photograph(void **state)
 {
     (void)state;
-    weft_hand_photograph photograph[PHOTOGRAPHS];
+    weft_photographs_photograph photograph[PHOTOGRAPHS];
     weft_lens_estimate lens;
     photograph_all(photograph);
     cross(&photograph[2], 1, 9);
@@ -110,7 +110,7 @@ static void a_crossed_marker_costs_no_photograph(void **state)
 static void no_corner_is_lost_without_reason(void **state)
 {
     (void)state;
-    weft_hand_photograph photograph[PHOTOGRAPHS];
+    weft_photographs_photograph photograph[PHOTOGRAPHS];
     weft_lens_estimate lens;
     photograph_all(photograph);
     estimate(photograph, &lens);
@@ -122,7 +122,7 @@ static void no_corner_is_lost_without_reason(void **state)
 static void a_bent_sheet_and_another_zoom_are_left_out(void **state)
 {
     (void)state;
-    weft_hand_photograph photograph[PHOTOGRAPHS];
+    weft_photographs_photograph photograph[PHOTOGRAPHS];
     weft_lens_estimate lens;
     weft_camera zoomed = camera;
     zoomed.fx = zoomed.fy = 1800;
@@ -143,7 +143,7 @@ static void most_corners_of_a_gently_bent_sheet_stay_or_none_count(void **state)
 {
     (void)state;
     for (double bend_mm = 0.5; bend_mm < 5; bend_mm += 0.5) {
-        weft_hand_photograph photograph[PHOTOGRAPHS];
+        weft_photographs_photograph photograph[PHOTOGRAPHS];
         weft_lens_estimate lens;
         photograph_all(photograph);
         photograph[4] = photograph_of(&camera, 4, bend_mm);

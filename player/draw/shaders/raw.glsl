@@ -4,7 +4,7 @@
 // through heights (reflectance/relief/relief.glsl): each view then at a place of its own.
 uniform sampler2DArray raw_sample, raw_opacity;
 uniform int level_count;
-uniform ivec2 raw_tiles, opacity_tiles;           // layers, and width of a tile
+uniform ivec2 raw_tiles, opacity_tiles;           // components, and width of a tile
 uniform vec2 raw_atlas_size, opacity_atlas_size;  // texels
 uniform vec4 level_area[16];                      // x, y, width, height
 

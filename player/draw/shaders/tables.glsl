@@ -3,7 +3,7 @@
 // Constant defined by player/draw/programs.c: FEWER_BITS (see table_steps).
 // Fetched by textureLod at the middle of texels: software rasterisers take longer over texelFetch, which may name a
 // level.
-uniform sampler2DArray material_table;       // views in columns, then layers
+uniform sampler2DArray material_table;       // views in columns, then components
 uniform sampler2DArray material_light_table; // lights alike
 uniform float table_steps; // where FEWER_BITS: what 255 would be if T and S were coded in them
 uniform int level_count;

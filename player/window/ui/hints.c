@@ -29,7 +29,7 @@ static const hint hints[] = {
     {"Around", "where the lamp stands about the vertical"},
     {"Irradiance", "on a surface that faces the lamp: red, green, blue"},
     /* Material */
-    {"Layers / 4", "fewer layers are coarser and drawn faster"},
+    {"Components / 4", "fewer components are coarser and drawn faster"},
     {"View table T", "what the lobes lack, by the direction of the eye"},
     {"Light table S", "what the lobes lack, by the direction of the light"},
     {"Table bits", "shows T and S as if they were stored in so many bits"},

@@ -1,7 +1,7 @@
 #include "tests/btf/material/heights_example.h"
 #include "tests/support/fuzz.h"
 
-/* Heights that layers are seen through. */
+/* Heights that components are seen through. */
 void fuzz_write_seed(const char *path)
 {
     heights_write_example(path);

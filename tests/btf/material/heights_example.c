@@ -1,6 +1,6 @@
 #include "tests/btf/material/heights_example.h"
 
-#include "tests/btf/material/layers_example.h"
+#include "tests/btf/material/components_example.h"
 
 #include <stdlib.h>
 
@@ -20,7 +20,7 @@ void heights_write_example(const char *path)
     for (int y = 0; y < HEIGHTS_EXAMPLE_HEIGHT; y++)
         for (int x = 0; x < HEIGHTS_EXAMPLE_WIDTH; x++)
             value[y][x] = low_mm + (float)heights_example_code(x, y) / 255 * (high_mm - low_mm);
-    layers_write_example(path);
+    components_write_example(path);
     if (weft_material_read(path, &material, NULL) != WEFT_OK ||
         weft_material_heights_create(value[0], HEIGHTS_EXAMPLE_WIDTH, HEIGHTS_EXAMPLE_HEIGHT, 2, size_mm, &heights,
                                      NULL) != WEFT_OK)

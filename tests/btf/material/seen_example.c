@@ -1,6 +1,6 @@
 #include "tests/btf/material/seen_example.h"
 
-#include "tests/btf/material/layers_example.h"
+#include "tests/btf/material/components_example.h"
 
 #include <stdlib.h>
 
@@ -13,7 +13,7 @@ void seen_write_example(const char *path)
 {
     weft_material material;
     weft_seen *seen;
-    layers_write_example(path);
+    components_write_example(path);
     if (weft_material_read(path, &material, NULL) != WEFT_OK ||
         weft_seen_create(SEEN_EXAMPLE_SIDE, material.level_count, &seen, NULL) != WEFT_OK)
         abort();

@@ -9,7 +9,7 @@ enum { SEEN_EXAMPLE_SIDE = 8 };
 /* Cell `i` of all maps. */
 uint8_t seen_example_cell(int i);
 
-/* The example of layers (tests/btf/layers_example.h) as if two finer levels and a coarser one were gone. */
+/* The example of components (tests/btf/components_example.h) as if two finer levels and a coarser one were gone. */
 void seen_write_example(const char *path);
 
 #endif

@@ -1,6 +1,6 @@
 /* A material made of the texels of another: what is moved, what is mixed, and where its levels come from. */
 #include "btf/material/gather.h"
-#include "tests/btf/material/layers_example.h"
+#include "tests/btf/material/components_example.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
@@ -16,7 +16,7 @@ enum { WIDTH = 5, HEIGHT = 3 }; /* of the example */
 static void read_example(weft_material *material)
 {
     weft_error error = {0};
-    layers_write_example(NAME);
+    components_write_example(NAME);
     expect_ok(weft_material_read(NAME, material, &error), &error);
 }
 
@@ -48,10 +48,10 @@ static void texels_in_their_order_are_the_same_file(void **state)
     read_example(&material);
     place_in_order(mix);
     weft_material same = gathered(&material, WIDTH, HEIGHT, &mix[0][0]);
-    /* Levels of layers are made anew: those of the example are no means. */
+    /* Levels of components are made anew: those of the example are no means. */
     for (int k = 1; k < material.level_count; k++) {
-        weft_layers_level *a = &material.layers->level[k], *b = &same.layers->level[k];
-        memcpy(a->coefficient, b->coefficient, (size_t)(a->width * a->height * material.layers->layer_count));
+        weft_components_level *a = &material.components->level[k], *b = &same.components->level[k];
+        memcpy(a->coefficient, b->coefficient, (size_t)(a->width * a->height * material.components->component_count));
         memcpy(a->ceiling, b->ceiling, weft_ceiling_count(a->width, a->height));
         memcpy(a->floor, b->floor, 3 * weft_ceiling_count(a->width, a->height));
     }
@@ -102,22 +102,22 @@ static void texels_and_levels_are_moved_alike(void **state)
     weft_material_free(&material);
 }
 
-static void layers_are_mixed_and_all_else_is_the_heaviest(void **state)
+static void components_are_mixed_and_all_else_is_the_heaviest(void **state)
 {
     (void)state;
     weft_material material;
     read_example(&material);
-    material.layers->level[0].ceiling[0] = 10;
+    material.components->level[0].ceiling[0] = 10;
     weft_texel_mix mix = {{{4, 1, 0.75f}, {1, 2, 0.25f}}};
     weft_material one = gathered(&material, 1, 1, &mix);
-    const int8_t *from = material.layers->level[0].coefficient, *to = one.layers->level[0].coefficient;
+    const int8_t *from = material.components->level[0].coefficient, *to = one.components->level[0].coefficient;
     for (int group = 0; group < 2; group++)
         for (int c = 0; c < 4; c++) {
             int a = from[4 * (group * WIDTH * HEIGHT + WIDTH * 1 + 4) + c];
             int b = from[4 * (group * WIDTH * HEIGHT + WIDTH * 2 + 1) + c];
             assert_int_equal(to[4 * group + c], lround(0.75 * a + 0.25 * b));
         }
-    assert_int_equal(one.layers->level[0].ceiling[0], 10);
+    assert_int_equal(one.components->level[0].ceiling[0], 10);
     expect_same_texel(&one, 0, 0, &material, 0, WIDTH * 1 + 4);
     weft_material_free(&one);
     weft_material_free(&material);
@@ -126,32 +126,32 @@ static void layers_are_mixed_and_all_else_is_the_heaviest(void **state)
 static void a_ceiling_is_the_largest_of_what_is_mixed_and_a_floor_the_least(void **state)
 {
     (void)state;
-    const weft_layers shape = {.layer_count = 4,
-                               .view_count = 1,
-                               .image_count = 1,
-                               .light_side = 4,
-                               .view_side = 4,
-                               .light_smoothness = 1,
-                               .view_smoothness = 1,
-                               .least_cosine = 1};
+    const weft_components shape = {.component_count = 4,
+                                   .view_count = 1,
+                                   .image_count = 1,
+                                   .light_side = 4,
+                                   .view_side = 4,
+                                   .light_smoothness = 1,
+                                   .view_smoothness = 1,
+                                   .least_cosine = 1};
     weft_error error = {0};
     weft_material material;
     expect_ok(weft_material_create(24, 8, 0, 0, 0, 0, &material, &error), &error);
-    expect_ok(weft_layers_create(&shape, 24, 8, 1, &material.layers, &error), &error);
-    material.has_layers = true;
-    memcpy(material.layers->level[0].ceiling, (uint8_t[]){50, 90, 70}, 3);
-    memcpy(material.layers->level[0].floor, (uint8_t[]){40, 5, 9, 20, 7, 8, 30, 6, 7}, 9);
+    expect_ok(weft_components_create(&shape, 24, 8, 1, &material.components, &error), &error);
+    material.has_components = true;
+    memcpy(material.components->level[0].ceiling, (uint8_t[]){50, 90, 70}, 3);
+    memcpy(material.components->level[0].floor, (uint8_t[]){40, 5, 9, 20, 7, 8, 30, 6, 7}, 9);
     material.has_floors = true;
     for (int i = 0; i < 6; i++) {
         int a = i % 3, b = (i % 3 + 1 + i / 3) % 3;
         weft_texel_mix mix = {{{8 * a, 0, 0.75f}, {8 * b + 3, 5, 0.25f}}};
         weft_material one = gathered(&material, 1, 1, &mix);
-        const uint8_t *ceiling = material.layers->level[0].ceiling;
-        assert_int_equal(one.layers->level[0].ceiling[0], ceiling[a] > ceiling[b] ? ceiling[a] : ceiling[b]);
-        const uint8_t *least = material.layers->level[0].floor;
+        const uint8_t *ceiling = material.components->level[0].ceiling;
+        assert_int_equal(one.components->level[0].ceiling[0], ceiling[a] > ceiling[b] ? ceiling[a] : ceiling[b]);
+        const uint8_t *least = material.components->level[0].floor;
         for (int c = 0; c < 3; c++) {
             int of_a = least[3 * a + c], of_b = least[3 * b + c];
-            assert_int_equal(one.layers->level[0].floor[c], of_a < of_b ? of_a : of_b);
+            assert_int_equal(one.components->level[0].floor[c], of_a < of_b ? of_a : of_b);
         }
         assert_true(one.has_floors);
         weft_material_free(&one);
@@ -167,7 +167,8 @@ static void levels_of_layers_are_means_of_what_they_cover(void **state)
     read_example(&material);
     place_in_order(mix);
     weft_material same = gathered(&material, WIDTH, HEIGHT, &mix[0][0]);
-    const weft_layers_level *fine = &same.layers->level[0], *last = &same.layers->level[same.level_count - 1];
+    const weft_components_level *fine = &same.components->level[0],
+                                *last = &same.components->level[same.level_count - 1];
     for (int c = 0; c < 4; c++) {
         double sum = 0;
         for (int i = 0; i < WIDTH * HEIGHT; i++)
@@ -176,7 +177,7 @@ static void levels_of_layers_are_means_of_what_they_cover(void **state)
     }
     /* The upper right texel of level 1 covers one column alone. */
     int expected = (int)lround((fine->coefficient[4 * 4] + fine->coefficient[4 * (WIDTH + 4)]) / 2.0);
-    assert_int_equal(same.layers->level[1].coefficient[4 * 2], expected);
+    assert_int_equal(same.components->level[1].coefficient[4 * 2], expected);
     weft_material_free(&same);
     weft_material_free(&material);
 }
@@ -197,7 +198,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_in_their_order_are_the_same_file),
         cmocka_unit_test(texels_and_levels_are_moved_alike),
-        cmocka_unit_test(layers_are_mixed_and_all_else_is_the_heaviest),
+        cmocka_unit_test(components_are_mixed_and_all_else_is_the_heaviest),
         cmocka_unit_test(a_ceiling_is_the_largest_of_what_is_mixed_and_a_floor_the_least),
         cmocka_unit_test(levels_of_layers_are_means_of_what_they_cover),
         cmocka_unit_test(more_texels_than_there_were_are_refused),

@@ -75,7 +75,7 @@ static void the_section_is_as_the_document_says(void **state)
     free(section);
 }
 
-/* A reader from before there were heights skips them, and has the layers. */
+/* A reader from before there were heights skips them, and has the components. */
 static void heights_can_be_skipped(void **state)
 {
     (void)state;
@@ -90,7 +90,7 @@ static void heights_can_be_skipped(void **state)
     weft_material material;
     expect_ok(weft_material_read(NAME, &material, &error), &error);
     assert_null(material.heights);
-    assert_non_null(material.layers);
+    assert_non_null(material.components);
     weft_material_free(&material);
 }
 

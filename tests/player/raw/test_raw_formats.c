@@ -1,7 +1,7 @@
 /* The same dataset in every format: what is drawn is what the evaluator in C finds in the file. */
 #include "../stage.h"
+#include "evaluate/raw_btf.h"
 #include "player/draw/player_parts.h"
-#include "study/model/raw_btf.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { IMAGES = 5, LAYERS = 3, MAX_SIDE = 24 };
+enum { IMAGES = 5, COMPONENTS = 3, MAX_SIDE = 24 };
 
 /* The texture, as the strips fill it: half floats of every image. */
 typedef struct picture {
@@ -22,7 +22,7 @@ static weft_raw_plan make_plan(int width, int height, weft_raw_format format)
     weft_raw_plan plan;
     weft_error error;
     const weft_dataset_layout layout = {.width = width, .height = height, .image_count = IMAGES, .view_count = IMAGES};
-    const weft_raw_limits limits = {SIZE_MAX, SIZE_MAX, 4096, LAYERS, true, format};
+    const weft_raw_limits limits = {SIZE_MAX, SIZE_MAX, 4096, COMPONENTS, true, format};
     assert_int_equal(weft_raw_plan_make(&layout, true, "cloth", &limits, &plan, &error), WEFT_OK);
     return plan;
 }
@@ -32,13 +32,13 @@ static weft_code take(void *context, const weft_raw_strip *strip, weft_error *er
     (void)error;
     picture *p = context;
     weft_mip_area area = p->plan->layout.area[strip->level];
-    int width = (int)(strip->bytes / 8 / LAYERS / WEFT_RAW_BLOCK);
+    int width = (int)(strip->bytes / 8 / COMPONENTS / WEFT_RAW_BLOCK);
     assert_int_equal(width, (area.width + WEFT_RAW_BLOCK) / WEFT_RAW_BLOCK * WEFT_RAW_BLOCK);
     const weft_half(*texel)[4] = strip->texels;
-    for (int layer = 0; layer < LAYERS; layer++) {
+    for (int layer = 0; layer < COMPONENTS; layer++) {
         for (int y = 0; y < WEFT_RAW_BLOCK; y++, texel += width)
-            memcpy(p->texel[strip->column * LAYERS + layer][area.y + strip->row * WEFT_RAW_BLOCK + y][area.x], texel,
-                   (size_t)width * sizeof *texel);
+            memcpy(p->texel[strip->column * COMPONENTS + layer][area.y + strip->row * WEFT_RAW_BLOCK + y][area.x],
+                   texel, (size_t)width * sizeof *texel);
     }
     p->strips++;
     free(strip->texels);

@@ -29,14 +29,14 @@ static void the_line_names_what_was_not_fitted(void **state)
     expect_words(&h, "error on photographs that were not fitted: compressed 20.2 %");
 }
 
-static void fewer_layers_are_not_what_was_measured(void **state)
+static void fewer_components_are_not_what_was_measured(void **state)
 {
     (void)state;
     weft_scene scene = weft_scene_default();
     assert_true(weft_draws_whole_material(&scene, 32, false));
-    scene.lobe[0] = scene.view_table = false; /* layers have neither */
+    scene.lobe[0] = scene.view_table = false; /* components have neither */
     assert_true(weft_draws_whole_material(&scene, 32, false));
-    scene.layers = 28;
+    scene.components = 28;
     assert_false(weft_draws_whole_material(&scene, 32, false));
     assert_true(weft_draws_whole_material(&scene, 28, false));
 }
@@ -46,7 +46,7 @@ static void lobes_without_a_part_are_not_what_was_measured(void **state)
     (void)state;
     weft_scene scene = weft_scene_default();
     assert_true(weft_draws_whole_material(&scene, 0, false));
-    scene.layers = 0;
+    scene.components = 0;
     assert_true(weft_draws_whole_material(&scene, 0, false));
     scene.lobe[WEFT_SCENE_MAX_LOBES - 1] = false;
     assert_false(weft_draws_whole_material(&scene, 0, false));
@@ -75,7 +75,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_line_names_what_was_not_fitted),
-        cmocka_unit_test(fewer_layers_are_not_what_was_measured),
+        cmocka_unit_test(fewer_components_are_not_what_was_measured),
         cmocka_unit_test(lobes_without_a_part_are_not_what_was_measured),
         cmocka_unit_test(heights_that_are_left_out_are_not_what_was_measured),
     };

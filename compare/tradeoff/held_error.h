@@ -1,0 +1,64 @@
+/* The error of a model on images that it was not fitted to, in all of them and where eyes look. */
+#ifndef WEFT_COMPARE_TRADEOFF_HELD_ERROR_H
+#define WEFT_COMPARE_TRADEOFF_HELD_ERROR_H
+
+#include "base/picture/image.h"
+#include "compare/pictures/picture_quality.h"
+#include "compare/tradeoff/priced_model.h"
+#include "compare/tradeoff/sample_kind.h"
+#include "compare/tradeoff/weight.h"
+#include "compress/hold_out/split.h"
+#include "compress/hold_out/trial.h"
+
+typedef struct weft_held_error {
+    weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];
+    double interval_width; /* mean width of the interval of 95 % (compress/hold_out/certify.h) that these samples
+                              give, in units of the mean sample; 0 where all is black */
+    int picture_count;     /* of held-out images whose texels are neighbours */
+    weft_picture_quality quality[WEFT_SAMPLE_KINDS]; /* means over the pixels of these, each shown as its photograph
+                                                        needs; PSNR: of the pictures' decibels, weighted by pixels */
+    long picture_pixels[WEFT_SAMPLE_KINDS];          /* of these; 0: nothing is known of the kind */
+    double fit_s;
+    weft_weight weight;           /* of the fit without what is held out */
+    int worst_image;              /* the picture with the largest relative RMSE */
+    weft_image sample, predicted; /* of it, sRGB encoded; empty without pictures */
+} weft_held_error;
+void weft_held_error_free(weft_held_error *measured);
+
+/* Which splits are measured, with others for other numbers (compress/hold_out/split.h): 1 .. WEFT_HOLD_OUT_ENOUGH.
+ * Their samples count together. */
+typedef struct weft_splits_asked {
+    uint64_t first;
+    int count;
+} weft_splits_asked;
+
+/* Some texels of a dataset, and the images that are held out of them. */
+typedef struct weft_held_bench weft_held_bench;
+
+/* Reads at most side x side texels of the kind, of which `asked` says which directions are held out; of a handful of
+ * images each is in turn. Pictures are compared where texels are neighbours (WEFT_EXCERPT_BLOCK). Files are written
+ * to the folder of `scratch_path`, nameless once they are complete. The caller frees.
+ * Of a dataset with a surface the kind is to be WEFT_EXCERPT_BLOCK: then more are read, to which components are fitted,
+ * and those in the middle are measured, of which all models are asked for what is known through the surface alone.
+ * Dataset and path must outlive the bench. Errors: those of weft_splits_create and of reading. */
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
+                                 const char *scratch_path, weft_held_bench **result, weft_error *error);
+void weft_held_bench_free(weft_held_bench *bench);
+
+/* How many texels are measured, and what is held out of them. */
+long weft_held_bench_texels(const weft_held_bench *bench);
+const weft_splits *weft_held_bench_splits(const weft_held_bench *bench);
+
+/* The pictures alone, by the first split, of a bench that has them: errors and the interval stay 0. The fit is that of
+ * weft_held_bench_measure, which may be asked before and after. The caller frees *measured. Errors: those of
+ * weft_compress. */
+weft_code weft_held_bench_picture(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error);
+
+/* Fits the model without what is held out, and measures it there. The fit of the model before is used again where it is
+ * the same. The caller frees *measured. Errors: those of weft_compress; WEFT_BAD_USAGE where all that is held out is
+ * masked. */
+weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error);
+
+#endif

@@ -1,0 +1,333 @@
+#include "base/text/html_page.h"
+#include "compare/tradeoff/plot.h"
+#include "compare/tradeoff/tradeoff.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { NAME = 64, SHOWN_WIDTH = 96 };
+
+static double error_of(const weft_tradeoff_row *row)
+{
+    return row->measured.held[WEFT_SAMPLES_ALL].relative_rmse;
+}
+
+/* Which texels errors are of. */
+static void put_texels(weft_page *page, const weft_tradeoff *tradeoff)
+{
+    bool is_spread = tradeoff->measured_texels != tradeoff->neighbours || tradeoff->lobe_texels != tradeoff->neighbours;
+    if (!is_spread) {
+        fprintf(page->html, "<p class=\"note\">Errors are those of %ld texels in the middle", tradeoff->neighbours);
+        return;
+    }
+    fprintf(page->html,
+            "<p class=\"note\">Errors are those of %ld texels that lie spread, of lobes of %ld, as in the file of a "
+            "material; pictures, and errors of fewer texels and of cloth, are those of %ld texels in the middle",
+            tradeoff->measured_texels, tradeoff->lobe_texels, tradeoff->neighbours);
+    if (tradeoff->split_count > 1)
+        fprintf(page->html, "; others are held out %d times", tradeoff->split_count);
+}
+
+/* ---- The choice ---- */
+
+/* A model that several presets choose stands there once. */
+static void put_choice(weft_page *page, const weft_tradeoff_row *row, int number)
+{
+    const char *between = "";
+    fputs("<tr><td>", page->html);
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
+        if (row->is_chosen[preset])
+            fprintf(page->html, "%s<b>%s</b>", between, weft_preset_name(preset));
+        between = row->is_chosen[preset] ? ", " : between;
+    }
+    fprintf(page->html,
+            "</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td><td>%.2f %%</td><td class=\"text "
+            "reason\">",
+            number, row->model.name, row->price.bytes, 100 * error_of(row));
+    between = "";
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
+        if (row->is_chosen[preset])
+            fprintf(page->html, "%s%s", between, weft_preset_reason(preset));
+        between = row->is_chosen[preset] ? "<br>" : between;
+    }
+    fprintf(page->html, "</td><td class=\"text\"><code>%s</code></td></tr>\n", row->model.arguments);
+}
+
+/* In the order of the presets. */
+static void put_choices(weft_page *page, const weft_tradeoff *tradeoff)
+{
+    const weft_tradeoff_row *before = NULL;
+    fputs("<table>\n", page->html);
+    weft_page_columns(page, ":preset|:model|bytes|error, not fitted|:chosen for|:weft compress");
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
+        for (int i = 0; i < tradeoff->row_count; i++) {
+            const weft_tradeoff_row *row = &tradeoff->row[i];
+            if (!row->is_chosen[preset] || row == before)
+                continue;
+            put_choice(page, row, i + 1);
+            before = row;
+        }
+    }
+    fputs("</table>\n", page->html);
+}
+
+static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
+{
+    char held[160];
+    weft_tradeoff_print_held(tradeoff, held, sizeof held);
+    fprintf(page->html,
+            "<p>%d models of %d \u00d7 %d texels and %d photographs. <b>Error</b> is the relative RMSE on photographs "
+            "that the model was not fitted to: %s were held out, the same for all. What each model says of those that "
+            "it was fitted to stands beside it.</p>\n",
+            tradeoff->row_count, tradeoff->width, tradeoff->height, tradeoff->image_count, held);
+    put_choices(page, tradeoff);
+    put_texels(page, tradeoff);
+    if (tradeoff->costly_texels < tradeoff->texels)
+        fprintf(page->html,
+                "; bytes and times of fits are those of %ld texels, with S, T by components or T of fewer photographs "
+                "of %ld, and the rest in proportion; frames show these",
+                tradeoff->fitted_texels, tradeoff->costly_texels);
+    fprintf(page->html, ". Times are those of this machine, with %d threads, while this page was made in %.0f s. ",
+            tradeoff->threads, tradeoff->seconds);
+    if (tradeoff->why_not_drawn[0])
+        fputs("There are no times of frames: ", page->html);
+    else
+        fputs("Frames are 730 \u00d7 400 pixels of the drape, every texel, level and direction evaluated, drawn by ",
+              page->html);
+    weft_page_text(page, tradeoff->why_not_drawn[0] ? tradeoff->why_not_drawn : tradeoff->renderer);
+    fputs(". The table as numbers: <a href=\"tradeoff.csv\">tradeoff.csv</a>.</p>\n", page->html);
+}
+
+/* ---- Plots ---- */
+
+static void print_label(const weft_tradeoff_row *row, char *label, size_t size)
+{
+    char presets[NAME];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
+    snprintf(label, size, "%s%s%s", presets, presets[0] ? ": " : "", row->model.name);
+}
+
+static double x_of(const weft_tradeoff_row *row, int plot)
+{
+    return plot == 0 ? row->price.bytes : plot == 1 ? row->price.frame_ms : row->price.fit_s;
+}
+
+static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int which, weft_error *error)
+{
+    static const char *const title[] = {"Error by size", "Error by time of a frame", "Error by time of the fit"};
+    static const char *const x_label[] = {"bytes of the file", "ms a frame", "seconds"};
+    weft_plot_point point[WEFT_PRICED_MOST];
+    char label[WEFT_PRICED_MOST][2 * NAME], target[WEFT_PRICED_MOST][NAME], picture[WEFT_PRICED_MOST][NAME];
+    for (int i = 0; i < tradeoff->row_count; i++) {
+        const weft_tradeoff_row *row = &tradeoff->row[i];
+        print_label(row, label[i], sizeof label[i]);
+        snprintf(target[i], NAME, "model-%d", i + 1);
+        snprintf(picture[i], NAME, "model-%d.png", i + 1);
+        point[i] = (weft_plot_point){.x = x_of(row, which),
+                                     .y = 100 * error_of(row),
+                                     .number = i + 1,
+                                     .colour = (int)row->model.family,
+                                     .label = label[i],
+                                     .picture = row->measured.picture_count > 0 ? picture[i] : NULL,
+                                     .target = target[i],
+                                     .is_marked = row->is_chosen[WEFT_PRESET_NONE],
+                                     .is_joined = which == 0 && !row->is_beaten && row->model.arguments[0]};
+    }
+    const weft_plot plot = {title[which], x_label[which], "relative RMSE, not fitted (%)", tradeoff->row_count, point};
+    return weft_plot_write(page, &plot, error);
+}
+
+static weft_code put_plots(weft_page *page, const weft_tradeoff *tradeoff, weft_error *error)
+{
+    static const char *const family[] = {
+        "lobes", "lobes and tables", "components", "fewer photographs or texels", "the photographs, interpolated",
+        "BARD",  "analytic cloth"};
+    fputs("<p class=\"key\">", page->html);
+    for (int i = 0; i < WEFT_PRICED_FAMILIES; i++)
+        fprintf(page->html, "<span class=\"colour%d\">\u25cf</span> %s ", i, family[i]);
+    fputs("</p>\n<div class=\"plots\">\n", page->html);
+    for (int i = 0; i < 3; i++)
+        WEFT_TRY(put_plot(page, tradeoff, i, error));
+    fputs(
+        "</div>\n<p class=\"note\">Both axes are logarithmic; lower and further left is better. The line joins the "
+        "models of <code>weft compress</code> that no other of them beats in bytes and error; rings mark the presets. "
+        "Point at a disc to see the model under the light at which it is worst; a click leads to its row.</p>\n",
+        page->html);
+    return WEFT_OK;
+}
+
+/* ---- Table ---- */
+
+static void put_number(weft_page *page, const char *format, double value, bool is_known)
+{
+    fputs("<td>", page->html);
+    if (is_known)
+        fprintf(page->html, format, value);
+    fputs("</td>", page->html);
+}
+
+static void put_errors(weft_page *page, const weft_held_error *m)
+{
+    const weft_error_summary *all = &m->held[WEFT_SAMPLES_ALL];
+    put_number(page, "<b>%.2f %%</b>", 100 * all->relative_rmse, true);
+    put_number(page, "%.2f %%", 100 * m->fitted[WEFT_SAMPLES_ALL].relative_rmse, m->fitted[WEFT_SAMPLES_ALL].count > 0);
+    put_number(page, "%.1f %%", 100 * m->interval_width, m->interval_width > 0);
+    put_number(page, "%.1f %%", 100 * all->median_relative, true);
+    put_number(page, "%.1f %%", 100 * all->percentile80_relative, true);
+    for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++)
+        put_number(page, "%.2f %%", 100 * m->held[kind].relative_rmse, m->held[kind].count > 0);
+    put_number(page, "%.2f", m->quality[0].psnr_db, m->picture_count > 0);
+    put_number(page, "%.4f", m->quality[0].ssim, m->picture_count > 0);
+    put_number(page, "%.4f", m->quality[0].flip, m->picture_count > 0);
+}
+
+static void put_name(weft_page *page, const weft_tradeoff_row *row, int number)
+{
+    char presets[NAME];
+    bool is_chosen = row->is_chosen[WEFT_PRESET_NONE];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
+    fprintf(page->html, "<tr id=\"model-%d\"%s><td>%d</td><td class=\"text\">%s%s%s%s</td>", number,
+            is_chosen ? " class=\"weak\"" : "", number, row->model.name, is_chosen ? " <b>(" : "", presets,
+            is_chosen ? ")</b>" : "");
+}
+
+/* What a small screen shows without scrolling comes first. */
+static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
+{
+    const weft_price *price = &row->price;
+    bool is_fitted = weft_priced_model_is_fit(&row->model) || price->fit_s > 0;
+    put_name(page, row, number);
+    put_number(page, "%.0f", price->bytes, true);
+    put_errors(page, &row->measured);
+    put_number(page, "%.3f", price->strobing, price->has_strobing);
+    put_number(page, "%.1f", price->fit_s, is_fitted);
+    put_number(page, "%.1f", price->frame_ms, price->frame_ms > 0);
+    put_number(page, "%.1f", price->large_frame_ms, price->large_frame_ms > 0);
+    put_number(page, "%.0f", price->evaluations_a_second, price->evaluations_a_second > 0);
+    put_number(page, "%.0f", price->fetches.reads, price->fetches.reads > 0);
+    put_number(page, "%.0f", price->fetches.bytes, price->fetches.bytes > 0);
+    put_number(page, price->bits_a_texel < 1000 ? "%.1f" : "%.0f", price->bits_a_texel, true);
+    fprintf(page->html, "<td>%d</td><td class=\"text\"><code>%s</code></td></tr>\n", price->photograph_count,
+            row->model.arguments);
+}
+
+static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
+{
+    fputs("<h2 id=\"prices\">Prices</h2>\n<table class=\"long\">\n", page->html);
+    weft_page_columns(
+        page, "|:model|bytes|error, not fitted|fitted|95 % interval|median|80th "
+              "percentile|grazing|highlights|shadows|PSNR dB|"
+              "SSIM|FLIP|strobing|fit, s|ms a frame|ms at 1080p|evaluations/s|reads a pixel|bytes a pixel|bits a texel|"
+              "photographs|:weft compress");
+    for (int i = 0; i < tradeoff->row_count; i++)
+        put_row(page, &tradeoff->row[i], i + 1);
+    fputs(
+        "</table>\n"
+        "<p class=\"note\">A model without options of <code>weft compress</code> shows what would be saved: T rounded "
+        "to fewer bits is what <code>--budget</code> mixes texel by texel; fewer photographs are a shorter capture. "
+        "Evaluations: BRDFs at places and directions drawn at random, one thread. Reads of textures and bytes of all "
+        "texels that the hardware interpolates, for a pixel under one light; through heights as many as the longest "
+        "sight line takes. Grazing: view or light 52.5\u00b0 or more "
+        "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
+        "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
+        "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
+        "of an interval that held so many of these samples, in parts of the mean sample. Strobing: while a light "
+        "sweeps "
+        "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
+        "BARD, "
+        "which has no frames.</p>\n",
+        page->html);
+}
+
+/* ---- Pictures ---- */
+
+static void put_qualities(weft_page *page, const weft_tradeoff_row *row, int number)
+{
+    const weft_held_error *m = &row->measured;
+    fprintf(page->html, "<tr><td>%d</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td>", number, number,
+            row->model.name);
+    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
+        put_number(page, "%.2f", m->quality[kind].psnr_db, m->picture_pixels[kind] > 0);
+    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
+        put_number(page, "%.4f", m->quality[kind].ssim, m->picture_pixels[kind] > 0);
+    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
+        put_number(page, "%.4f", m->quality[kind].flip, m->picture_pixels[kind] > 0);
+    fputs("</tr>\n", page->html);
+}
+
+static int most_pictures(const weft_tradeoff *tradeoff)
+{
+    int most = 0;
+    for (int i = 0; i < tradeoff->row_count; i++) {
+        int count = tradeoff->row[i].measured.picture_count;
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
+static void put_picture_table(weft_page *page, const weft_tradeoff *tradeoff)
+{
+    int pictures = most_pictures(tradeoff);
+    if (pictures == 0)
+        return;
+    fputs("<h2 id=\"looks\">How alike pictures look</h2>\n<table class=\"long\">\n", page->html);
+    weft_page_columns(page, "|:model|PSNR dB|PSNR, grazing|PSNR, highlights|PSNR, shadows|SSIM|SSIM, grazing|"
+                            "SSIM, highlights|SSIM, shadows|FLIP|FLIP, grazing|FLIP, highlights|FLIP, shadows");
+    for (int i = 0; i < tradeoff->row_count; i++)
+        put_qualities(page, &tradeoff->row[i], i + 1);
+    fprintf(page->html,
+            "</table>\n<p class=\"note\">Of up to %d pictures that were not fitted: of all pixels, and of those that "
+            "graze, shine or lie in shadow, told apart as above. What SSIM and FLIP see about a pixel may lie beyond. "
+            "SSIM: 1 is equal; FLIP: 0 is equal.</p>\n",
+            pictures);
+}
+
+static weft_code put_pictures_of(weft_page *page, const weft_tradeoff_row *row, int number, weft_error *error)
+{
+    char name[NAME], caption[NAME + 96];
+    const weft_held_error *m = &row->measured;
+    fprintf(page->html, "<div class=\"row\">\n");
+    snprintf(name, sizeof name, "model-%d-photograph", number);
+    snprintf(caption, sizeof caption, "photograph %d", m->worst_image);
+    WEFT_TRY(weft_page_picture(page, name, &m->sample, SHOWN_WIDTH, caption, error));
+    snprintf(name, sizeof name, "model-%d", number);
+    snprintf(caption, sizeof caption, "%d: %s, error %.1f %%", number, row->model.name, 100 * error_of(row));
+    WEFT_TRY(weft_page_picture(page, name, &m->predicted, SHOWN_WIDTH, caption, error));
+    fputs("</div>\n", page->html);
+    return WEFT_OK;
+}
+
+static weft_code put_pictures(weft_page *page, const weft_tradeoff *tradeoff, weft_error *error)
+{
+    fputs(
+        "<h2 id=\"pictures\">Under the worst light</h2>\n<p class=\"note\">Of the photographs that were held out, the "
+        "one that the model misses most, and what it makes of it. A click enlarges both, to be wiped one against the "
+        "other.</p>\n<div class=\"pairs\">\n",
+        page->html);
+    for (int i = 0; i < tradeoff->row_count; i++) {
+        if (tradeoff->row[i].measured.picture_count > 0)
+            WEFT_TRY(put_pictures_of(page, &tradeoff->row[i], i + 1, error));
+    }
+    fputs("</div>\n", page->html);
+    return WEFT_OK;
+}
+
+weft_code weft_tradeoff_write_page(const weft_tradeoff *tradeoff, const char *dataset_path, const char *folder,
+                                   weft_error *error)
+{
+    char title[512];
+    const char *slash = strrchr(dataset_path, '/');
+    snprintf(title, sizeof title, "What accuracy costs: %s", slash ? slash + 1 : dataset_path);
+    weft_page page;
+    WEFT_TRY(weft_page_begin(folder, title, &page, error));
+    put_summary(&page, tradeoff);
+    weft_code code = put_plots(&page, tradeoff, error);
+    put_table(&page, tradeoff);
+    put_picture_table(&page, tradeoff);
+    if (code == WEFT_OK)
+        code = put_pictures(&page, tradeoff, error);
+    if (code == WEFT_OK)
+        return weft_page_finish(&page, error);
+    weft_page_abandon(&page);
+    return code;
+}

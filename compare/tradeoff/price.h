@@ -1,0 +1,52 @@
+/* What a model costs: bytes, time to fit, time to evaluate and to draw. */
+#ifndef WEFT_COMPARE_TRADEOFF_PRICE_H
+#define WEFT_COMPARE_TRADEOFF_PRICE_H
+
+#include "base/progress.h"
+#include "compare/tradeoff/priced_model.h"
+#include "player/texture/fetches.h"
+
+typedef struct weft_price {
+    int photograph_count;        /* that it is made of */
+    double bytes;                /* of the file */
+    double bits_a_texel;         /* of the dataset */
+    double fit_s;                /* of the whole dataset */
+    double evaluations_a_second; /* of one thread: BRDFs at places and directions drawn at random */
+    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD, which nothing plays */
+    double large_frame_ms;       /* 1920 x 1080 pixels */
+    weft_fetches fetches;        /* of a pixel; 0 for BARD and microcylinder cloth */
+    bool has_strobing;           /* of BARD there is none */
+    double strobing;             /* compare/tradeoff/strobing.h */
+} weft_price;
+
+/* A shop that fits all of the texels of a dataset, or the middle ones. */
+typedef struct weft_price_shop weft_price_shop;
+
+/* How many texels are fitted at most, along each side: of a model, and of one that takes long. Files are packed, so
+ * that bytes of few texels are not quite in proportion. */
+typedef struct weft_price_sides {
+    int usual, costly;
+} weft_price_sides;
+
+/* A dataset of no more texels is fitted whole; of a larger one a block of as many, with bytes and times in
+ * proportion. Raw and cloth have the usual block. Files are written to the folder of `scratch_path`, and are gone
+ * afterwards. Both arguments must outlive the shop. The caller frees it. Errors: those of reading and writing. */
+weft_code weft_price_shop_open(weft_dataset *dataset, weft_price_sides sides, const char *scratch_path,
+                               const weft_progress *progress, weft_price_shop **result, weft_error *error);
+void weft_price_shop_close(weft_price_shop *shop);
+
+/* Texels that are fitted. */
+long weft_price_shop_texels(const weft_price_shop *shop, bool of_costly);
+
+/* Why nothing is drawn, or "". */
+const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop);
+/* Who draws, or "". */
+const char *weft_price_shop_renderer(const weft_price_shop *shop);
+
+/* Fits the model, unless the one before has the same fit, and weighs and times it. What differs from the one before in
+ * the numbers alone, by rounding, is drawn in the same time: it is that of the one before. *has_parts is false where
+ * the dataset did not carry what the options ask for. Errors: those of weft_compress, of writing and drawing. */
+weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, bool *has_parts,
+                         weft_error *error);
+
+#endif

@@ -1,0 +1,80 @@
+/* The models that a price list offers for a dataset. */
+#ifndef WEFT_COMPARE_TRADEOFF_PRICED_MODEL_H
+#define WEFT_COMPARE_TRADEOFF_PRICED_MODEL_H
+
+#include "compress/options/options.h"
+
+enum { WEFT_PRICED_MOST = 64, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
+
+typedef enum weft_priced_family {
+    WEFT_PRICED_LOBES,
+    WEFT_PRICED_TABLES, /* lobes with T or S */
+    WEFT_PRICED_COMPONENTS,
+    WEFT_PRICED_FEWER, /* photographs or texels */
+    WEFT_PRICED_RAW,   /* the photographs, interpolated */
+    WEFT_PRICED_BARD,  /* those under the light along the normal, which say all others (reflectance/bard/bard.h) */
+    WEFT_PRICED_CLOTH, /* analytic (compare/tradeoff/cloth.h) */
+    WEFT_PRICED_FAMILIES
+} weft_priced_family;
+
+/* What is taken of the photographs. */
+typedef enum weft_photographs_taken {
+    WEFT_PHOTOGRAPHS_ALL,
+    WEFT_PHOTOGRAPHS_SECOND_RINGS, /* of views and lights: 0, 30 and 60 degrees of ubo81 */
+    WEFT_PHOTOGRAPHS_THIRD_RINGS,  /* 0 and 45 degrees */
+    WEFT_PHOTOGRAPHS_41_VIEWS,     /* spread evenly */
+    WEFT_PHOTOGRAPHS_21_VIEWS
+} weft_photographs_taken;
+
+typedef struct weft_priced_model {
+    char name[WEFT_PRICED_NAME];
+    char arguments[WEFT_PRICED_ARGUMENTS]; /* of weft compress; "" where that has none for it */
+    weft_priced_family family;
+    weft_compress_options options; /* of raw only heights: seen through them */
+    weft_photographs_taken photographs;
+    int table_bits;       /* 4 or 6: T is rounded after the fit; 0: as it was fitted */
+    const char *cloth;    /* file of a WEFT_PRICED_CLOTH; not owned */
+    int first_components; /* these of the components alone, the most important; 0: all */
+    bool fewer_texels;    /* half of them along each side */
+    bool gives_fewer;     /* a later one with fewer texels is made from its fit */
+    int work;             /* of a fit, beside that of others */
+} weft_priced_model;
+
+/* What else of a dataset decides which models it can carry. */
+typedef struct weft_priced_dataset {
+    bool has_opacity;  /* it lies in T, which components then have beside them */
+    bool has_surface;  /* components and raw are offered with and without it (options.heights) */
+    const char *cloth; /* file of a weave to be fitted, or of microcylinder cloth; NULL: none; not owned */
+} weft_priced_dataset;
+
+/* Of a dataset, without analytic cloth. Pure. */
+weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset);
+
+/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
+ * from the fit of another (table_bits, first_components, fewer_texels, options.heights, options.rounded) comes after
+ * it; components through heights come right after the same without. Pure. */
+int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
+                            weft_priced_model *model);
+
+/* Whether weft compress makes models of these errors, the second of components through heights and the first of the
+ * same without: it keeps heights only where they gain enough (compress/hold_out/hold_out.h). Pure. */
+bool weft_priced_heights_are_kept(double without, double through);
+
+/* Whether the model is what weft_compress fits; else it is raw, BARD or analytic cloth. Pure. */
+bool weft_priced_model_is_fit(const weft_priced_model *model);
+
+/* Whether it is such a fit of each texel alone: of lobes and tables, not of components. Pure. */
+bool weft_priced_model_is_of_lobes(const weft_priced_model *model);
+
+/* Whether its fit takes long for what it tells: S, T by components, or T of fewer photographs. Pure. */
+bool weft_priced_model_is_costly(const weft_priced_model *model);
+
+/* Whether the model is made from the same fit as the other. Pure. */
+bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);
+
+/* Marks the images that are not taken with 1 in left_out [image_count], others with 0; *taken_count receives how many
+ * are taken. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_photographs_leave_out(const weft_dataset_layout *layout, weft_photographs_taken taken, uint8_t *left_out,
+                                     int *taken_count, weft_error *error);
+
+#endif

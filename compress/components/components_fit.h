@@ -1,0 +1,64 @@
+/* Components of a dataset (btf/material/components.h): learned from some texels, then projected for all. */
+#ifndef WEFT_COMPRESS_COMPONENTS_COMPONENTS_FIT_H
+#define WEFT_COMPRESS_COMPONENTS_COMPONENTS_FIT_H
+
+#include "base/numeric/error_summary.h"
+#include "base/progress.h"
+#include "btf/dataset/dataset.h"
+#include "btf/material/material.h"
+#include "compress/kriging/covariance.h"
+#include "compress/options/options.h"
+#include "compress/run/checkpoint.h"
+#include "compress/run/memory.h"
+
+#include <stdbool.h>
+
+typedef struct weft_components_options {
+    int component_count; /* 4 .. 64, a multiple of 4 */
+    weft_component_maps_choice maps;
+    bool finer;              /* as many components again (compress/options/options.h) */
+    const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
+    bool rounded;            /* values and coefficients, where what is left hides it */
+    bool for_screen;         /* dim images count for more (compress/options/options.h) */
+    /* These change nothing in the result: */
+    weft_memory_budget budget;
+    weft_checkpoint
+        *checkpoint; /* whose unread records are blocks of these components, and which gets more; NULL: none */
+    weft_log log;    /* hears that these blocks are used */
+} weft_components_options;
+
+typedef struct weft_components_report {
+    weft_components_kind kind;
+    double trial_error[WEFT_COMPONENTS_KINDS]; /* relative RMSE of each kind, by which it was chosen: on images held
+                                              out, 0 where none was; of scattered images, whose last kind is not tried,
+                                              on the images themselves */
+    bool scattered;
+    weft_covariance covariance; /* of scattered images, chosen by leaving out each of some images ... */
+    int left_out_count;         /* ... how many these are in a texel ... */
+    double left_out_error;      /* ... and their relative RMSE, each predicted by the others of them */
+    weft_covariance mean;       /* of the mean texel, where it is of a mean */
+    double mean_error[2];       /* of the mean texel, without this and with it */
+    double rounding_step; /* for weft_components_round: what that adds is hidden by what the components leave; 0 where
+                             none is */
+    int training_texels;
+    long masked, empty_texels;
+    weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
+} weft_components_report;
+
+/* That there can be so many components, before any work is done. Errors: WEFT_BAD_USAGE. */
+weft_code weft_components_check(int component_count, weft_error *error);
+
+/* Whether the images of a dataset that are not held out are scattered: fewer than 12 for a view, fewer than 4 views, or
+ * near. Their components are learned from what kriging says of some texels (compress/kriging/kriging.h). Pure. */
+bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out);
+
+/* Adds components to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives
+ * the same components, for any number of threads and any memory. What a checkpoint keeps is the coefficients of all
+ * texels: what they are coefficients of is learned anew, which takes as long for a large dataset as for a small one.
+ * Errors: WEFT_BAD_USAGE for options out of range and where the memory does not suffice; those of reading; those of
+ * weft_checkpoint_append; WEFT_BAD_INPUT for a checkpoint of other blocks; WEFT_SYSTEM. */
+weft_code weft_components_fit(weft_dataset *dataset, const weft_components_options *options,
+                              const weft_progress *progress, weft_material *material, weft_components_report *report,
+                              weft_error *error);
+
+#endif

@@ -1,0 +1,16 @@
+/* Scalar products of many long vectors with many others: the loop in which components spend their time. */
+#ifndef WEFT_COMPRESS_COMPONENTS_DOTS_H
+#define WEFT_COMPRESS_COMPONENTS_DOTS_H
+
+#include <stddef.h>
+
+/* result [a_count][b_count] = a_i . b_j, vectors of `length` floats, a multiple of 16, aligned to 64 bytes. Each
+ * product is added up in the same order, whatever the counts. */
+void weft_dots(const float *const *a, int a_count, const float *const *b, int b_count, size_t length, float *result);
+
+#define WEFT_DECLARE_DOTS_OF(set)                                                                                      \
+    void weft_dots_##set(const float *const *a, int a_count, const float *const *b, int b_count, size_t length,        \
+                         float *result)
+#define WEFT_DECLARE_DOTS(set) WEFT_DECLARE_DOTS_OF(set)
+
+#endif

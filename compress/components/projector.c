@@ -1,0 +1,133 @@
+#include "base/numeric/cholesky.h"
+#include "compress/components/dots.h"
+#include "compress/components/factorisation.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the largest diagonal element: keeps factors that are 0, or alike, apart. */
+static const double least_ridge = 1e-7;
+
+void weft_projector_free(weft_projector *projector)
+{
+    free(projector->gram);
+    free(projector->root);
+    free(projector->ridge);
+    *projector = (weft_projector){0};
+}
+
+static void point_at(const weft_projector *projector, const float **row)
+{
+    for (size_t k = 0; k < (size_t)projector->count; k++)
+        row[k] = projector->factor + k * projector->length;
+}
+
+static void fill_gram(weft_projector *projector)
+{
+    int count = projector->count;
+    const float *row[WEFT_COMPONENTS_MAX];
+    float product[WEFT_COMPONENTS_MAX];
+    point_at(projector, row);
+    for (int i = 0; i < count; i++) {
+        weft_dots(row + i, 1, row, count, projector->length, product);
+        for (int j = 0; j < count; j++)
+            projector->gram[i * count + j] = (double)product[j];
+    }
+}
+
+static void fill_ridge(const weft_factorisation *components, weft_projector *projector)
+{
+    double most = 0;
+    for (int k = 0; k < projector->count; k++)
+        most = fmax(most, projector->gram[k * projector->count + k]);
+    for (int k = 0; k < projector->count; k++) {
+        double variance = components->variance[k];
+        projector->ridge[k] = variance > 0 ? components->noise / variance : most;
+        projector->ridge[k] = fmin(projector->ridge[k], most) + least_ridge * most + 1e-30;
+    }
+}
+
+/* Replaces gram by Cholesky's factor of gram + ridge; false where rounding has left nothing of it. */
+static bool factor(const weft_projector *projector, double *gram)
+{
+    for (int k = 0; k < projector->count; k++)
+        gram[k * projector->count + k] += projector->ridge[k];
+    return weft_cholesky_factor(projector->count, projector->count, gram);
+}
+
+weft_code weft_projector_create(const weft_factorisation *components, const float *factors, int image_count,
+                                weft_projector *projector, weft_error *error)
+{
+    size_t count = (size_t)components->count;
+    *projector = (weft_projector){.count = components->count,
+                                  .image_count = image_count,
+                                  .length = components->length,
+                                  .factor = factors,
+                                  .gram = malloc(count * count * sizeof *projector->gram),
+                                  .root = malloc(count * count * sizeof *projector->root),
+                                  .ridge = malloc(count * sizeof *projector->ridge)};
+    if (!projector->gram || !projector->root || !projector->ridge) {
+        weft_projector_free(projector);
+        return weft_fail_memory(error, "projection", count * count * sizeof(double));
+    }
+    fill_gram(projector);
+    fill_ridge(components, projector);
+    memcpy(projector->root, projector->gram, count * count * sizeof *projector->root);
+    if (factor(projector, projector->root))
+        return WEFT_OK;
+    weft_projector_free(projector);
+    return weft_fail(error, WEFT_BAD_INPUT, "samples that are no numbers have no components");
+}
+
+/* Takes what the factors are at a masked image out of the lower triangle of the Gram matrix. */
+static void remove_image(const weft_projector *projector, size_t image, double *gram)
+{
+    size_t count = (size_t)projector->count;
+    for (size_t c = 0; c < 3; c++) {
+        const float *at = projector->factor + 3 * image + c;
+        for (size_t i = 0; i < count; i++) {
+            double own = (double)at[i * projector->length];
+            for (size_t j = 0; j <= i; j++)
+                gram[i * count + j] -= own * (double)at[j * projector->length];
+        }
+    }
+}
+
+static void solve_masked(const weft_projector *projector, const uint8_t *valid, double *gram, double *x)
+{
+    size_t count = (size_t)projector->count;
+    memcpy(gram, projector->gram, count * count * sizeof *gram);
+    for (size_t image = 0; image < (size_t)projector->image_count; image++) {
+        if (!valid[image])
+            remove_image(projector, image, gram);
+    }
+    const double *root = factor(projector, gram) ? gram : projector->root;
+    weft_cholesky_solve(projector->count, projector->count, root, x);
+}
+
+weft_code weft_projector_solve(const weft_projector *projector, const float *const *vector, const uint8_t *const *valid,
+                               int texel_count, float *coefficient, weft_error *error)
+{
+    int count = projector->count;
+    const float *row[WEFT_COMPONENTS_MAX];
+    double x[WEFT_COMPONENTS_MAX], *gram = malloc((size_t)count * (size_t)count * sizeof *gram);
+    if (!gram)
+        return weft_fail_memory(error, "projection", (size_t)count * (size_t)count * sizeof *gram);
+    point_at(projector, row);
+    weft_dots(vector, texel_count, row, count, projector->length, coefficient);
+    for (int texel = 0; texel < texel_count; texel++) {
+        float *own = coefficient + (size_t)texel * (size_t)count;
+        for (int k = 0; k < count; k++)
+            x[k] = (double)own[k];
+        if (memchr(valid[texel], 0, (size_t)projector->image_count))
+            solve_masked(projector, valid[texel], gram, x);
+        else
+            weft_cholesky_solve(count, count, projector->root, x);
+        for (int k = 0; k < count; k++)
+            own[k] = (float)x[k];
+    }
+    free(gram);
+    return WEFT_OK;
+}

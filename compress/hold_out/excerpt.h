@@ -1,0 +1,74 @@
+/* Some texels of a dataset with all of their images, in memory; and some of their images as a dataset of its own. */
+#ifndef WEFT_COMPRESS_HOLD_OUT_EXCERPT_H
+#define WEFT_COMPRESS_HOLD_OUT_EXCERPT_H
+
+#include "btf/dataset/dataset.h"
+#include "btf/material/material.h"
+#include "evaluate/error/window.h"
+
+/* Which texels. */
+typedef enum weft_excerpt_kind {
+    WEFT_EXCERPT_SCATTERED, /* one of every cell of a grid, each at another place in it, so that no repeat of the cloth
+                               is hit again and again: for fits to which neighbours mean nothing, under far lights */
+    WEFT_EXCERPT_REGULAR,   /* the same without moving them: near lights need texels at even distances */
+    WEFT_EXCERPT_BLOCK,     /* neighbours, from the centre: for fits that borrow from them */
+    WEFT_EXCERPT_SQUARES,   /* squares of 16 x 16 neighbours, one of every cell of a grid, where `side` is a multiple
+                               of 16: what neighbours have in common stays, and no part stands for all. For far lights */
+    WEFT_EXCERPT_SMALL_SQUARES /* the same of 4 x 4, where `side` is a multiple of 4 */
+} weft_excerpt_kind;
+
+/* Freed with weft_excerpt_free. */
+typedef struct weft_excerpt {
+    weft_dataset_layout layout;   /* of these texels, its origin moved to their centre, without a plane; every image and
+                                     view */
+    weft_predicted_window window; /* of a block: where it lies in the dataset */
+    weft_dataset_heights surface; /* of a block: that of the whole dataset (weft_dataset_read_surface); else none */
+    double whole_mm[2];           /* width and height of the dataset */
+    int neighbours;     /* of squares: the texels along their sides; of a block: along its longer side; else 1 */
+    weft_half *samples; /* [height][width][image_count][3] */
+    uint8_t *mask;      /* [height][width][image_count] */
+    float *opacity;     /* [height][width][view_count]; NULL where the dataset has none */
+    float *frames;      /* [height][width][2][3]; NULL where the dataset has none */
+} weft_excerpt;
+
+/* A rectangle of texels. */
+typedef struct weft_texel_block {
+    int x, y, width, height;
+} weft_texel_block;
+
+/* At most side x side texels in the middle of the excerpt. Pure. */
+weft_texel_block weft_excerpt_middle(const weft_excerpt *excerpt, int side);
+
+/* Copies some texels of a far excerpt, without the surface. The caller frees *result. Errors: WEFT_SYSTEM for memory.
+ */
+weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+                            weft_error *error);
+
+/* Whether the excerpt is seen through heights. Pure. */
+bool weft_excerpt_has_surface(const weft_excerpt *excerpt);
+
+/* Whether every sample is masked. Pure. */
+bool weft_excerpt_is_masked(const weft_excerpt *excerpt);
+
+/* Gives a material of these texels the heights of the whole dataset, for weft_predictor_of_window. Errors: those of
+ * weft_material_heights_create. */
+weft_code weft_excerpt_give_heights(const weft_excerpt *excerpt, weft_material *material, weft_error *error);
+
+/* Reads at most `side` x `side` texels. The choice depends on the sizes alone. Errors: those of reading; WEFT_SYSTEM.
+ */
+weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_excerpt *excerpt,
+                            weft_error *error);
+void weft_excerpt_free(weft_excerpt *excerpt);
+
+/* Writes the images with held_out[image] == 0, and the views that still have any, to a dataset in the folder of `path`
+ * and opens it, without a surface. It has no name once it is complete, so that nothing is left of it when it is closed,
+ * however the program ends; weft_compress takes it without a checkpoint. What is held out is not in it. The caller
+ * closes *result. Errors: those of writing and reading. */
+weft_code weft_excerpt_write(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
+                             weft_dataset **result, weft_error *error);
+
+/* The same with the part of the surface that lies above these texels, unless it is too deep for them. */
+weft_code weft_excerpt_write_with_surface(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
+                                          weft_dataset **result, weft_error *error);
+
+#endif

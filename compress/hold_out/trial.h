@@ -1,0 +1,48 @@
+/* One split of some texels at work: what models say of the images that it holds out and, to tell what being fitted is
+ * worth, of as many from the same rings that were fitted: those that the next split holds out. */
+#ifndef WEFT_COMPRESS_HOLD_OUT_TRIAL_H
+#define WEFT_COMPRESS_HOLD_OUT_TRIAL_H
+
+#include "base/numeric/error_summary.h"
+#include "compress/hold_out/excerpt.h"
+#include "evaluate/error/predictor.h"
+
+/* Samples channel by channel beside what a model says of them; masked ones and those below the horizon are not among
+ * them. Freed with weft_asked_samples_free. */
+typedef struct weft_asked_samples {
+    size_t count;
+    weft_compared *value; /* [count] */
+    uint8_t *group;       /* [count] flags of compress/hold_out/split.h */
+    uint32_t *sample; /* [count] texel of the excerpt x image_count + image; red, green and blue follow each other */
+} weft_asked_samples;
+void weft_asked_samples_free(weft_asked_samples *asked);
+
+/* Freed with weft_trial_free. */
+typedef struct weft_trial {
+    const weft_excerpt *excerpt; /* not owned */
+    const uint8_t *held;         /* [image_count] why each image is held out; not owned */
+    int *image;                  /* [held_count + fitted_count] the images that are held out, then the others */
+    uint8_t *flags;              /* of those: why each is held out, here or in the next split */
+    int held_count, fitted_count;
+    weft_texel_block asked; /* of the excerpt: the texels that are asked for; at first all */
+    bool predicts_asked;    /* predictors have the texels that are asked for alone; at first false */
+} weft_trial;
+
+/* `held` [image_count] are the flags of the split, `next` those of the one after it; both must outlive the trial, as
+ * the excerpt must. Errors: WEFT_SYSTEM for memory; the caller frees then too. */
+weft_code weft_trial_create(const weft_excerpt *excerpt, const uint8_t *held, const uint8_t *next, weft_trial *trial,
+                            weft_error *error);
+void weft_trial_free(weft_trial *trial);
+
+/* What a predictor for the layout of the excerpt, or for the part that is asked for, says of the images that are held
+ * out, and of the fitted ones. The caller frees both, also on failure. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_trial_ask(const weft_trial *trial, const weft_predictor *predictor, weft_asked_samples *held,
+                         weft_asked_samples *fitted, weft_error *error);
+
+/* What the photographs that are not held out say of those that are (compress/hold_out/interpolation.h), where they say
+ * anything; `through`: seen through the surface of the excerpt, which has one. The caller frees it, also on failure.
+ * Errors: those of weft_interpolation_create. */
+weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft_asked_samples *held,
+                                     weft_error *error);
+
+#endif

@@ -1,0 +1,209 @@
+#include "edit/prune/texels.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Levels ---- */
+
+static bool is_empty(const weft_reach *reach, int k)
+{
+    return reach->texel_count[k] == 0;
+}
+
+/* Texels stay as square as they are: sides that were halved unevenly do not. */
+static bool keeps_proportions(const weft_reach *reach)
+{
+    return (long)reach->width[0] * reach->height[1] == (long)reach->width[1] * reach->height[0];
+}
+
+static void drop_finest(weft_reach *reach, weft_material *material)
+{
+    double width_mm = material->texel_pitch_mm * reach->width[0];
+    weft_material_drop_finest(material);
+    free(reach->texel[0]);
+    reach->level_count--;
+    for (int k = 0; k < reach->level_count; k++) {
+        reach->width[k] = reach->width[k + 1];
+        reach->height[k] = reach->height[k + 1];
+        reach->texel[k] = reach->texel[k + 1];
+        reach->texel_count[k] = reach->texel_count[k + 1];
+    }
+    reach->texel[reach->level_count] = NULL;
+    reach->level_low--;
+    reach->level_high--;
+    material->texel_pitch_mm = width_mm / reach->width[0];
+}
+
+/* ---- Texels ---- */
+
+/* The texel of a row that is kept and nearest to a column; the row repeats. */
+static int nearest_in_row(const uint8_t *kept, int width, int column)
+{
+    for (int away = 0; away <= width / 2; away++) {
+        int left = (column - away + width) % width, right = (column + away) % width;
+        if (kept[left])
+            return left;
+        if (kept[right])
+            return right;
+    }
+    return column;
+}
+
+static bool has_any(const uint8_t *kept, int width)
+{
+    return memchr(kept, 1, (size_t)width) != NULL;
+}
+
+static int nearest_row(const uint8_t *kept, int width, int height, int row)
+{
+    for (int away = 0; away <= height / 2; away++) {
+        int above = (row - away + height) % height, below = (row + away) % height;
+        if (has_any(kept + (size_t)above * (size_t)width, width))
+            return above;
+        if (has_any(kept + (size_t)below * (size_t)width, width))
+            return below;
+    }
+    return 0;
+}
+
+/* source [height][width]: where each texel comes from. A level of which nothing is kept repeats its first row. */
+static void find_sources(const uint8_t *kept, int width, int height, size_t *source)
+{
+    for (int y = 0; y < height; y++) {
+        int from = nearest_row(kept, width, height, y);
+        const uint8_t *row = kept + (size_t)from * (size_t)width;
+        for (int x = 0; x < width; x++)
+            *source++ = (size_t)from * (size_t)width + (size_t)nearest_in_row(row, width, x);
+    }
+}
+
+/* One plane; texels that are copied from are kept, and so never written. */
+static void fill_plane(void *plane, size_t texel_bytes, const size_t *source, size_t count)
+{
+    uint8_t *bytes = plane;
+    for (size_t i = 0; plane && i < count; i++)
+        if (source[i] != i)
+            memcpy(bytes + i * texel_bytes, bytes + source[i] * texel_bytes, texel_bytes);
+}
+
+static void fill_planes(void *planes, int plane_count, size_t texel_bytes, const size_t *source, size_t count)
+{
+    for (int i = 0; planes && i < plane_count; i++)
+        fill_plane((uint8_t *)planes + (size_t)i * texel_bytes * count, texel_bytes, source, count);
+}
+
+static void fill_basis(const weft_table_basis *basis, const size_t *source, size_t count)
+{
+    if (basis)
+        fill_planes(basis->coefficient, 3 * basis->component_count, 1, source, count);
+}
+
+static void fill_level(const weft_material *material, int k, const size_t *source)
+{
+    const weft_material_level *level = &material->level[k];
+    size_t count = (size_t)level->width * (size_t)level->height;
+    fill_plane(level->frame, 3 * sizeof *level->frame, source, count);
+    fill_plane(level->diffuse, 4 * sizeof *level->diffuse, source, count);
+    fill_planes(level->lobe, 3 * material->lobe_count, 4 * sizeof *level->lobe, source, count);
+    fill_planes(level->table, material->view_count, 4, source, count);
+    fill_planes(level->light_table, material->light_count, 4, source, count);
+    fill_basis(level->table_basis, source, count);
+    fill_basis(level->light_table_basis, source, count);
+    fill_plane(level->model, 1, source, count);
+    if (material->components)
+        fill_planes(material->components->level[k].coefficient,
+                    material->components->component_count / WEFT_COMPONENTS_GROUP, WEFT_COMPONENTS_GROUP, source,
+                    count);
+}
+
+static weft_code fill(const weft_reach *reach, const weft_material *material, int k, weft_error *error)
+{
+    size_t count = (size_t)reach->width[k] * (size_t)reach->height[k];
+    if (reach->texel_count[k] == (long)count)
+        return WEFT_OK;
+    size_t *source = calloc(count, sizeof *source);
+    if (!source)
+        return weft_fail_memory(error, "texels", count * sizeof *source);
+    find_sources(reach->texel[k], reach->width[k], reach->height[k], source);
+    fill_level(material, k, source);
+    free(source);
+    return WEFT_OK;
+}
+
+static void drop_coarsest(weft_reach *reach, weft_material *material)
+{
+    weft_material_drop_coarsest(material);
+    free(reach->texel[--reach->level_count]);
+    reach->texel[reach->level_count] = NULL;
+}
+
+weft_code weft_prune_texels(weft_reach *reach, weft_material *material, int *finer, int *coarser, weft_error *error)
+{
+    *finer = *coarser = 0;
+    while (reach->level_count > 1 && is_empty(reach, 0) && keeps_proportions(reach)) {
+        drop_finest(reach, material);
+        ++*finer;
+    }
+    while (reach->level_count > 1 && is_empty(reach, reach->level_count - 1)) {
+        drop_coarsest(reach, material);
+        ++*coarser;
+    }
+    for (int k = 0; k < reach->level_count; k++)
+        WEFT_TRY(fill(reach, material, k, error));
+    return WEFT_OK;
+}
+
+/* ---- The diffuse terms ---- */
+
+enum { HALF_MANTISSA = 10, KEPT_MANTISSA = 5, LARGEST_FINITE = 0x7bff };
+
+/* The carry of a mantissa goes into the exponent, as it should. */
+static weft_half rounded(weft_half value)
+{
+    const int cut = HALF_MANTISSA - KEPT_MANTISSA;
+    int sum = value + (1 << (cut - 1));
+    return (weft_half)((sum > LARGEST_FINITE ? value : sum) >> cut << cut);
+}
+
+void weft_prune_round_diffuse(weft_material *material)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        size_t count = 4 * (size_t)level->width * (size_t)level->height;
+        for (size_t i = 0; i < count; i++)
+            level->diffuse[i] = rounded(level->diffuse[i]);
+    }
+}
+
+/* ---- What is seen ---- */
+
+/* All texels that interpolation reads within a cell are kept. */
+static bool is_kept(const weft_reach *reach, int k, int column, int row)
+{
+    int width = reach->width[k], height = reach->height[k], side = WEFT_REACH_SIDE;
+    int left = (int)floor((double)column * width / side - 0.5), right = (int)floor((column + 1.0) * width / side - 0.5);
+    int top = (int)floor((double)row * height / side - 0.5), bottom = (int)floor((row + 1.0) * height / side - 0.5);
+    for (int y = top; y <= bottom + 1; y++)
+        for (int x = left; x <= right + 1; x++)
+            if (!reach->texel[k][(size_t)((y + height) % height) * (size_t)width + (size_t)((x + width) % width)])
+                return false;
+    return true;
+}
+
+weft_code weft_prune_note_seen(const weft_reach *reach, int finer, int coarser, weft_material *material,
+                               weft_error *error)
+{
+    weft_seen *seen;
+    WEFT_TRY(weft_seen_create(WEFT_REACH_SIDE, reach->level_count, &seen, error));
+    seen->finer_levels = finer;
+    seen->coarser_levels = coarser;
+    memcpy(weft_seen_cells(seen, WEFT_SEEN_VIEWS), reach->view, sizeof reach->view);
+    memcpy(weft_seen_cells(seen, WEFT_SEEN_LIGHTS), reach->light, sizeof reach->light);
+    for (int k = 0; k < reach->level_count; k++) {
+        uint8_t *cell = weft_seen_cells(seen, WEFT_SEEN_PLACES + k);
+        for (int i = 0; i < WEFT_REACH_SIDE * WEFT_REACH_SIDE; i++)
+            cell[i] = is_kept(reach, k, i % WEFT_REACH_SIDE, i / WEFT_REACH_SIDE);
+    }
+    weft_material_take_seen(material, seen);
+    return WEFT_OK;
+}

@@ -1,0 +1,289 @@
+#include "registration/photographs/certainty.h"
+
+#include "base/numeric/cholesky.h"
+#include "base/numeric/statistics.h"
+#include "base/picture/colour.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POSE = 6 };
+
+/* What all photographs are wrong by. */
+static const double shared_error = 0.02;
+
+/* ---- The view ---- */
+
+/* The pose after small turns about the axes of the camera, rad, and small moves along them, mm. */
+static weft_pose moved_pose(const weft_pose *pose, int parameter, double step)
+{
+    weft_pose moved = *pose;
+    double *along[3] = {&moved.translation.x, &moved.translation.y, &moved.translation.z};
+    if (parameter >= 3) {
+        *along[parameter - 3] += step;
+        return moved;
+    }
+    int a = (parameter + 1) % 3, b = (parameter + 2) % 3;
+    double c = cos(step), s = sin(step), u = *along[a], v = *along[b];
+    for (int k = 0; k < 3; k++) {
+        moved.rotation[a][k] = c * pose->rotation[a][k] - s * pose->rotation[b][k];
+        moved.rotation[b][k] = s * pose->rotation[a][k] + c * pose->rotation[b][k];
+    }
+    *along[a] = c * u - s * v;
+    *along[b] = s * u + c * v;
+    return moved;
+}
+
+static weft_pixel seen_at(const weft_camera *camera, const weft_pose *pose, const double plate[2])
+{
+    weft_homography homography = weft_homography_of_pose(camera, pose);
+    return weft_camera_distort(camera, weft_homography_apply(&homography, plate[0], plate[1]));
+}
+
+/* How corners and the direction of the camera move with a parameter of the pose. */
+typedef struct pose_slopes {
+    double corner[POSE][WEFT_PLATE_CORNERS][2];
+    weft_vec3 view[POSE];
+} pose_slopes;
+
+static void find_slopes(const weft_camera *camera, const weft_photographs_photograph *p, pose_slopes *slopes)
+{
+    double distance_mm = weft_length(p->pose.translation);
+    for (int k = 0; k < POSE; k++) {
+        double step = 1e-4 * (k < 3 ? 1 : distance_mm);
+        weft_pose less = moved_pose(&p->pose, k, -step), more = moved_pose(&p->pose, k, step);
+        for (int i = 0; i < p->corner_count; i++) {
+            weft_pixel a = seen_at(camera, &less, p->plate[i]), b = seen_at(camera, &more, p->plate[i]);
+            slopes->corner[k][i][0] = (b.x - a.x) / (2 * step);
+            slopes->corner[k][i][1] = (b.y - a.y) / (2 * step);
+        }
+        weft_vec3 a = weft_unit(weft_pose_camera_position(&less)), b = weft_unit(weft_pose_camera_position(&more));
+        slopes->view[k] = weft_scale(weft_subtract(b, a), 1 / (2 * step));
+    }
+}
+
+/* Sum of the squares of the direction's deviations where corners of unit variance tell the pose; negative where they do
+ * not. */
+static double view_variance(const pose_slopes *slopes, int corner_count)
+{
+    double normal[POSE * POSE] = {0}, variance = 0;
+    for (int row = 0; row < POSE; row++) {
+        for (int column = 0; column <= row; column++) {
+            for (int i = 0; i < corner_count; i++)
+                normal[row * POSE + column] += slopes->corner[row][i][0] * slopes->corner[column][i][0] +
+                                               slopes->corner[row][i][1] * slopes->corner[column][i][1];
+        }
+    }
+    if (!weft_cholesky_factor(POSE, POSE, normal))
+        return -1;
+    for (int axis = 0; axis < 3; axis++) {
+        double along[POSE];
+        for (int k = 0; k < POSE; k++)
+            along[k] = axis == 0 ? slopes->view[k].x : axis == 1 ? slopes->view[k].y : slopes->view[k].z;
+        weft_cholesky_solve_lower(POSE, POSE, normal, along);
+        for (int k = 0; k < POSE; k++)
+            variance += along[k] * along[k];
+    }
+    return variance;
+}
+
+double weft_photographs_view_error_deg(const weft_camera *camera, const weft_photographs_photograph *photograph)
+{
+    pose_slopes slopes;
+    int freedom = 2 * photograph->corner_count - POSE;
+    if (freedom < 1)
+        return 90;
+    find_slopes(camera, photograph, &slopes);
+    double variance = view_variance(&slopes, photograph->corner_count);
+    double square = photograph->corner_rms_px * photograph->corner_rms_px * photograph->corner_count / freedom;
+    return variance < 0 ? 90 : fmin(90, weft_deg_of_rad(sqrt(square * variance)));
+}
+
+/* ---- The light ---- */
+
+/* Logarithm of the light of a sample of paper, over what the lamp explains of it but for its level. */
+static double paper_deviation(const double place[2], const weft_paper_sample *sample, const weft_lamp_solution *lamps,
+                              weft_vec3 lamp, const weft_pose *pose)
+{
+    double power = 1, encoded = 2 * (double)weft_srgb_of_linear(sample->light[1]) - 1;
+    double value = log((double)sample->light[1]), square = sample->radius_squared;
+    for (int k = 0; k < WEFT_TONE_TERMS; k++)
+        value += lamps->tone[k] * (power *= encoded);
+    double fall = 1 + square * (lamps->vignetting[0] + square * (lamps->vignetting[1] + square * lamps->vignetting[2]));
+    double reach = weft_length(weft_subtract(lamp, weft_vec3_of(place[0], place[1], 0)));
+    double beam = weft_flash_log_beam(&lamps->flash, pose, place[0], place[1]);
+    return value - log(fall) + 3 * log(reach / weft_length(lamp)) - beam;
+}
+
+weft_code weft_photographs_paper_residual(const weft_paper_places *places, const weft_lamp_evidence *evidence,
+                                          const weft_lamp_solution *lamps, const weft_lamp_place *lamp,
+                                          double *residual, weft_error *error)
+{
+    const weft_paper_samples *paper = &evidence->paper;
+    size_t count = 0, most = (size_t)paper->count + 1;
+    double *deviation = malloc(most * sizeof *deviation);
+    if (!deviation)
+        return weft_fail_memory(error, "samples of paper", most * sizeof *deviation);
+    for (int i = 0; i < paper->count; i++) {
+        const weft_paper_sample *sample = &paper->sample[i];
+        if (!places->is_ink[sample->place] && sample->light[1] > 0)
+            deviation[count++] =
+                paper_deviation(places->place[sample->place], sample, lamps, lamp->position_mm, &evidence->pose);
+    }
+    double middle = weft_quantile(deviation, count, 0.5);
+    for (size_t i = 0; i < count; i++)
+        deviation[i] = fabs(deviation[i] - middle);
+    *residual = 1.4826 * weft_quantile(deviation, count, 0.5);
+    free(deviation);
+    return WEFT_OK;
+}
+
+/* ---- The weight ---- */
+
+double weft_photographs_contrast(const weft_half *texel, const uint8_t *mask, size_t count)
+{
+    double sum = 0, squares = 0, valid = 0;
+    for (size_t i = 0; i < count; i++) {
+        double green = (double)weft_float_of_half(texel[3 * i + 1]);
+        if (mask[i])
+            continue;
+        sum += green;
+        squares += green * green;
+        valid++;
+    }
+    return sum > 0 ? sqrt(fmax(0, squares * valid / (sum * sum) - 1)) : 0;
+}
+
+void weft_photographs_mask_dark(const float *texel, float darkest, size_t count, uint8_t *mask,
+                                weft_photographs_photograph *photograph)
+{
+    photograph->clipped_texels = photograph->dark_texels = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float *rgb = texel + 3 * i;
+        photograph->clipped_texels += mask[i] == WEFT_MASK_SATURATED;
+        if (mask[i] || !(fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) < darkest))
+            continue;
+        mask[i] = WEFT_MASK_DARK;
+        photograph->dark_texels++;
+    }
+}
+
+double weft_photographs_variance(const weft_hand *hand, const weft_photographs_photograph *photograph, double contrast,
+                                 double pitch_mm)
+{
+    weft_vec3 lamp = weft_unit(photograph->lamp.position_mm);
+    double slope_squared = (1 - lamp.z * lamp.z) / (lamp.z * lamp.z);
+    double turn = weft_rad_of_deg(photograph->lamp.uncertainty_deg), turn_squared = turn * turn;
+    double mm_per_px = weft_length(photograph->pose.translation) / hand->lens.camera.fx;
+    double blur = 12 * fmax(0, photograph->point_spread.constant) * mm_per_px * mm_per_px;
+    double lost = contrast * blur / (blur + pitch_mm * pitch_mm);
+    return shared_error * shared_error + photograph->lamp.residual * photograph->lamp.residual +
+           turn_squared * slope_squared / 2 + turn_squared * turn_squared / 4 + lost * lost;
+}
+
+static double median_contrast(const weft_hand *hand, const int *index, int count, double *scratch)
+{
+    for (int i = 0; i < count; i++)
+        scratch[i] = hand->photograph[index[i]].contrast;
+    return weft_quantile(scratch, (size_t)count, 0.5);
+}
+
+/* value [WEFT_IMAGE_FIGURES][count]; weights with mean 1. */
+static void fill_figures(const weft_hand *hand, const int *index, int count, double pitch_mm, double *value)
+{
+    double contrast = median_contrast(hand, index, count, value), sum = 0;
+    double *weight = value + WEFT_IMAGE_WEIGHT * count;
+    for (int i = 0; i < count; i++) {
+        const weft_photographs_photograph *p = &hand->photograph[index[i]];
+        sum += weight[i] = 1 / weft_photographs_variance(hand, p, contrast, pitch_mm);
+        value[WEFT_IMAGE_VIEW_ERROR * count + i] = p->view_uncertainty_deg;
+        value[WEFT_IMAGE_LIGHT_ERROR * count + i] = p->lamp.uncertainty_deg;
+        value[WEFT_IMAGE_VALUE_ERROR * count + i] =
+            hypot(hypot(shared_error, p->lamp.residual), hand->lamps.dark_error);
+    }
+    for (int i = 0; i < count; i++)
+        weight[i] *= count / sum;
+}
+
+weft_code weft_photographs_put_figures(const weft_hand *hand, const int *index, int count, double pitch_mm,
+                                       weft_dataset_writer *writer, weft_error *error)
+{
+    double *value = malloc((size_t)(WEFT_IMAGE_FIGURES * count) * sizeof *value);
+    if (!value)
+        return weft_fail_memory(error, "figures of images", (size_t)(WEFT_IMAGE_FIGURES * count) * sizeof *value);
+    fill_figures(hand, index, count, pitch_mm, value);
+    weft_code code = WEFT_OK;
+    for (int figure = 0; code == WEFT_OK && figure < WEFT_IMAGE_FIGURES; figure++)
+        code = weft_dataset_writer_put_figure(writer, (weft_image_figure)figure, value + figure * count, error);
+    free(value);
+    return code;
+}
+
+/* ---- What the user should know ---- */
+
+/* Balls and pin have true sizes, the sheet has what --opening says: where they contradict the paper, one is wrong. */
+static weft_code note_misfits(weft_hand *hand, weft_error *error)
+{
+    const double most = 3;
+    if (hand->lamps.ball_misfit > most)
+        WEFT_TRY(weft_lines_add(&hand->notes, error,
+                                "the highlights on the balls lie %.0f standard errors off, median: is the opening, or "
+                                "the diameter of the balls, what was said?",
+                                hand->lamps.ball_misfit));
+    if (hand->lamps.pin_misfit > most)
+        return weft_lines_add(&hand->notes, error,
+                              "the shadows of the pin lie %.0f standard errors off, median: is the opening, or the "
+                              "height of the pin, what was said?",
+                              hand->lamps.pin_misfit);
+    return WEFT_OK;
+}
+
+/* Paper and ink leave the middle of the tone curve open. */
+static weft_code note_tone(weft_hand *hand, weft_error *error)
+{
+    const double most = 0.05;
+    if (!(hand->lamps.dark_error > most))
+        return WEFT_OK;
+    return weft_lines_add(
+        &hand->notes, error,
+        "dark cloth, a tenth as bright as the paper, may be off by %.0f %% (a standard error), bright "
+        "cloth by less: the tone curve is known no better. Next time take four photographs twice, the "
+        "second two stops darker, or use raw files",
+        100 * hand->lamps.dark_error);
+}
+
+weft_code weft_photographs_note(weft_hand *hand, weft_error *error)
+{
+    WEFT_TRY(note_misfits(hand, error));
+    return note_tone(hand, error);
+}
+
+/* ---- Whether they differ ---- */
+
+static bool is_near(weft_vec3 a, weft_vec3 b)
+{
+    const double near_rad = weft_rad_of_deg(3);
+    return weft_dot(weft_unit(a), weft_unit(b)) > cos(near_rad);
+}
+
+weft_code weft_photographs_check_variety(const char *folder, const weft_hand *hand, weft_error *error)
+{
+    const weft_photographs_photograph *first = NULL;
+    int used = 0;
+    for (int i = 0; i < hand->count; i++) {
+        const weft_photographs_photograph *p = &hand->photograph[i];
+        if (!weft_photographs_used(p))
+            continue;
+        used++;
+        if (!first)
+            first = p;
+        if (!is_near(p->lamp.position_mm, first->lamp.position_mm) ||
+            !is_near(weft_pose_camera_position(&p->pose), weft_pose_camera_position(&first->pose)))
+            return WEFT_OK;
+    }
+    return weft_fail(error, WEFT_BAD_INPUT,
+                     "'%s': all %d photographs that can be used show one view under one light: move the camera, or "
+                     "the lamp, from each to the next",
+                     folder, used);
+}

@@ -1,0 +1,291 @@
+#include "registration/photographs/lens.h"
+
+#include "base/numeric/statistics.h"
+#include "registration/photographs/strays.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* As many directions as this, 10 degrees apart and not all from above, tell focal length and distortion. */
+enum { views_enough = 4 };
+static const double distinct_deg = 10, steepest_at_least_deg = 25;
+
+/* A photograph whose corners lie this many times further off than the median is of another lens, or of a bent sheet. */
+static const double outlier_ratio = 4, outlier_floor = 4e-4; /* the latter as a share of the longer side */
+
+/* Photographs whose corners lie this near to each other, as a share of the longer side, were taken from a tripod. */
+static const double tripod_share = 5e-4;
+
+static const double film_diagonal_mm = 43.2666;
+
+/* Memory of one fit: the used photographs, packed. */
+typedef struct packing {
+    int count, *index;
+    weft_corner_view *view;
+    weft_pose *pose;
+    double *rms_px;
+} packing;
+
+static void packing_free(packing *p)
+{
+    free(p->index);
+    free(p->view);
+    free(p->pose);
+    free(p->rms_px);
+}
+
+static weft_code pack(const weft_photographs_photograph *photograph, int count, packing *p, weft_error *error)
+{
+    size_t n = (size_t)count;
+    *p = (packing){0, calloc(n, sizeof(int)), calloc(n, sizeof(weft_corner_view)), calloc(n, sizeof(weft_pose)),
+                   calloc(n, sizeof(double))};
+    if (!p->index || !p->view || !p->pose || !p->rms_px) {
+        packing_free(p);
+        return weft_fail_memory(error, "poses", n * 200);
+    }
+    for (int i = 0; i < count; i++) {
+        if (!weft_photographs_used(&photograph[i]))
+            continue;
+        p->index[p->count] = i;
+        p->view[p->count++] = (weft_corner_view){photograph[i].corner_count, (const double(*)[2])photograph[i].plate,
+                                                 (const double(*)[2])photograph[i].seen};
+    }
+    return WEFT_OK;
+}
+
+static weft_code fit(weft_photographs_photograph *photograph, int count, weft_lens_knowledge knowledge,
+                     weft_lens_estimate *lens, weft_error *error)
+{
+    packing p;
+    WEFT_TRY(pack(photograph, count, &p, error));
+    weft_code code =
+        weft_opencv_fit_lens(p.view, p.count, knowledge, &lens->camera, &lens->errors, p.pose, p.rms_px, error);
+    for (int i = 0; code == WEFT_OK && i < p.count; i++) {
+        photograph[p.index[i]].pose = p.pose[i];
+        photograph[p.index[i]].corner_rms_px = p.rms_px[i];
+    }
+    packing_free(&p);
+    return code;
+}
+
+/* Focal length in pixels from what the camera wrote; 0 where it wrote none. */
+static double written_focal_length(const weft_photographs_photograph *photograph, int count, int width, int height)
+{
+    for (int i = 0; i < count; i++) {
+        if (weft_photographs_used(&photograph[i]) && photograph[i].exif.focal_length_35mm > 0)
+            return photograph[i].exif.focal_length_35mm / film_diagonal_mm * hypot(width, height);
+    }
+    return 0;
+}
+
+static weft_camera ideal_camera(int width, int height, double focal_length)
+{
+    return (weft_camera){.width = width,
+                         .height = height,
+                         .fx = focal_length,
+                         .fy = focal_length,
+                         .cx = (width - 1) / 2.0,
+                         .cy = (height - 1) / 2.0};
+}
+
+static weft_vec3 view_of(const weft_photographs_photograph *p)
+{
+    return weft_unit(weft_pose_camera_position(&p->pose));
+}
+
+/* Distinct views, found greedily; *steepest receives the largest angle from the normal, degrees. */
+static int count_views(const weft_photographs_photograph *photograph, int count, double *steepest)
+{
+    int distinct = 0;
+    *steepest = 0;
+    for (int i = 0; i < count; i++) {
+        bool is_new = weft_photographs_used(&photograph[i]);
+        if (is_new)
+            *steepest = fmax(*steepest, weft_deg_of_rad(acos(view_of(&photograph[i]).z)));
+        for (int k = 0; is_new && k < i; k++)
+            is_new = !weft_photographs_used(&photograph[k]) ||
+                     weft_dot(view_of(&photograph[i]), view_of(&photograph[k])) < cos(weft_rad_of_deg(distinct_deg));
+        distinct += is_new;
+    }
+    return distinct;
+}
+
+/* How far off the corners of a photograph are that is used: RMS, median over the photographs. */
+static double median_rms(const weft_photographs_photograph *photograph, int count)
+{
+    double *rms = malloc((size_t)count * sizeof *rms);
+    int used = 0;
+    for (int i = 0; rms && i < count; i++) {
+        if (weft_photographs_used(&photograph[i]))
+            rms[used++] = photograph[i].corner_rms_px;
+    }
+    double median = rms ? weft_quantile(rms, (size_t)used, 0.5) : INFINITY;
+    free(rms);
+    return median;
+}
+
+/* Farther off than this is an outlier: a corner among those of its photograph, or a photograph. */
+static double outlier_limit(double median, const weft_camera *camera)
+{
+    return fmax(outlier_ratio * median, outlier_floor * fmax(camera->width, camera->height));
+}
+
+/* Takes single corners out, first: a pin before one marker is no reason to lose a photograph. *dropped: how many. */
+static weft_code drop_strays(weft_photographs_photograph *photograph, int count, const weft_camera *camera,
+                             int *dropped, weft_error *error)
+{
+    double limit = outlier_limit(median_rms(photograph, count), camera);
+    *dropped = 0;
+    for (int i = 0; i < count; i++) {
+        int own = 0;
+        if (weft_photographs_used(&photograph[i]))
+            WEFT_TRY(weft_strays_drop(camera, limit, &photograph[i], &own, error));
+        *dropped += own;
+    }
+    return WEFT_OK;
+}
+
+/* Gives photographs that do not fit a remark; returns how many. */
+static int leave_out(weft_photographs_photograph *photograph, int count, const weft_camera *camera)
+{
+    double median = median_rms(photograph, count), limit = outlier_limit(median, camera);
+    int left_out = 0;
+    for (int i = 0; i < count; i++) {
+        weft_photographs_photograph *p = &photograph[i];
+        if (!weft_photographs_used(p) || p->corner_rms_px <= limit)
+            continue;
+        snprintf(
+            p->remark, sizeof p->remark,
+            "its markers lie %.1f pixels off (median of all: %.2f): the sheet is bent, or it moved, or the lens was "
+            "another",
+            p->corner_rms_px, median);
+        left_out++;
+    }
+    return left_out;
+}
+
+/* Median distance between the corners that two photographs share, pixels; infinite where they share fewer than 4. */
+static double median_shift(const weft_photographs_photograph *a, const weft_photographs_photograph *b)
+{
+    double shift[WEFT_PLATE_CORNERS];
+    int count = 0;
+    for (int i = 0; i < a->corner_count; i++) {
+        for (int k = 0; k < b->corner_count; k++) {
+            if (a->plate[i][0] == b->plate[k][0] && a->plate[i][1] == b->plate[k][1])
+                shift[count++] = hypot(a->seen[i][0] - b->seen[k][0], a->seen[i][1] - b->seen[k][1]);
+        }
+    }
+    return count >= 4 ? weft_quantile(shift, (size_t)count, 0.5) : INFINITY;
+}
+
+/* A pose for photographs [index] that were taken from one place: that of all their corners together. */
+static weft_code share_pose(weft_photographs_photograph *photograph, const int *index, int count, weft_camera *camera,
+                            weft_error *error)
+{
+    size_t limit = (size_t)count * WEFT_PLATE_CORNERS;
+    double(*corner)[2] = malloc(2 * limit * sizeof *corner);
+    if (!corner)
+        return weft_fail_memory(error, "corners of a stay", 2 * limit * sizeof *corner);
+    double(*plate)[2] = corner, (*seen)[2] = corner + limit;
+    weft_corner_view all = {0, (const double(*)[2])plate, (const double(*)[2])seen};
+    for (int i = 0; i < count; i++) {
+        const weft_photographs_photograph *p = &photograph[index[i]];
+        memcpy(plate + all.count, p->plate, (size_t)p->corner_count * sizeof *plate);
+        memcpy(seen + all.count, p->seen, (size_t)p->corner_count * sizeof *seen);
+        all.count += p->corner_count;
+    }
+    weft_pose pose;
+    weft_lens_errors none;
+    double rms_px;
+    weft_code code = weft_opencv_fit_lens(&all, 1, WEFT_LENS_KNOWN, camera, &none, &pose, &rms_px, error);
+    for (int i = 0; code == WEFT_OK && i < count; i++)
+        photograph[index[i]].pose = pose;
+    free(corner);
+    return code;
+}
+
+/* Photographs from a tripod share a pose. */
+static weft_code share_poses(weft_photographs_photograph *photograph, int count, weft_camera *camera, weft_error *error)
+{
+    double limit = tripod_share * fmax(camera->width, camera->height);
+    int *index = malloc(((size_t)count + 1) * sizeof *index);
+    bool *done = calloc((size_t)count + 1, sizeof *done);
+    weft_code code = index && done ? WEFT_OK : weft_fail_memory(error, "stays", (size_t)count * 5);
+    for (int first = 0; code == WEFT_OK && first < count; first++) {
+        int together = 0;
+        for (int i = first; i < count && weft_photographs_used(&photograph[first]) && !done[first]; i++) {
+            if (!done[i] && weft_photographs_used(&photograph[i]) &&
+                median_shift(&photograph[first], &photograph[i]) < limit)
+                index[together++] = i;
+        }
+        for (int i = 0; i < together; i++)
+            done[index[i]] = true;
+        if (together > 1)
+            code = share_pose(photograph, index, together, camera, error);
+    }
+    free(index);
+    free(done);
+    return code;
+}
+
+static double rms_of(const weft_photographs_photograph *photograph, int count)
+{
+    double squares = 0, corners = 0;
+    for (int i = 0; i < count; i++) {
+        if (!weft_photographs_used(&photograph[i]))
+            continue;
+        squares += photograph[i].corner_rms_px * photograph[i].corner_rms_px * photograph[i].corner_count;
+        corners += photograph[i].corner_count;
+    }
+    return corners > 0 ? sqrt(squares / corners) : 0;
+}
+
+/* Fits with ideal optics first, to see how many distinct views there are. */
+static weft_code fit_unknown(weft_photographs_photograph *photograph, int count, int width, int height,
+                             weft_lens_estimate *lens, weft_error *error)
+{
+    double written = written_focal_length(photograph, count, width, height), steepest;
+    double guess = written > 0 ? written : 1.2 * fmax(width, height);
+    lens->camera = ideal_camera(width, height, guess);
+    WEFT_TRY(fit(photograph, count, WEFT_LENS_FOCAL_ONLY, lens, error));
+    lens->distinct_views = count_views(photograph, count, &steepest);
+    lens->knowledge = lens->distinct_views >= views_enough && steepest >= steepest_at_least_deg ? WEFT_LENS_UNKNOWN
+                                                                                                : WEFT_LENS_FOCAL_ONLY;
+    if (lens->knowledge == WEFT_LENS_FOCAL_ONLY && !(written > 0))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "the target is seen from %d directions only, and the photographs do not say their focal "
+                         "length: take some from other sides, or give a lens file (--lens)",
+                         lens->distinct_views);
+    return WEFT_OK;
+}
+
+weft_code weft_lens_estimate_from(weft_photographs_photograph *photograph, int count, int width, int height,
+                                  const weft_camera *known, weft_lens_estimate *lens, weft_error *error)
+{
+    *lens = (weft_lens_estimate){.knowledge = WEFT_LENS_KNOWN};
+    if (known && (known->width != width || known->height != height))
+        return weft_fail(error, WEFT_BAD_INPUT, "the lens is of photographs of %d x %d pixels, these have %d x %d",
+                         known->width, known->height, width, height);
+    if (known)
+        lens->camera = *known;
+    else
+        WEFT_TRY(fit_unknown(photograph, count, width, height, lens, error));
+    int wrong;
+    do {
+        WEFT_TRY(fit(photograph, count, lens->knowledge, lens, error));
+        WEFT_TRY(drop_strays(photograph, count, &lens->camera, &wrong, error));
+        if (!wrong)
+            wrong = leave_out(photograph, count, &lens->camera);
+    } while (wrong > 0);
+    lens->rms_px = rms_of(photograph, count);
+    return share_poses(photograph, count, &lens->camera, error);
+}
+
+double weft_lens_corner_radius_squared(const weft_camera *camera)
+{
+    double x = fmax(camera->cx, camera->width - 1 - camera->cx) / camera->fx;
+    double y = fmax(camera->cy, camera->height - 1 - camera->cy) / camera->fy;
+    return x * x + y * y;
+}

@@ -1,0 +1,609 @@
+/* Components fitted to datasets that are made of other formulas: mixtures of Phong highlights (Phong 1975) and
+ * Lambert, which no map of the components knows. */
+#include "tests/support/cmocka_all.h"
+
+#include "btf/direction/direction.h"
+#include "compress/compress.h"
+#include "reflectance/components/components.h"
+#include "tests/support/expect_ok.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/synthetic_dataset.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { WIDTH = 13, HEIGHT = 9, VIEWS = 61, LIGHTS = 61, COMPONENTS = 8 };
+
+#define NAME "cloth.btf.h5"
+
+static weft_vec3 direction(int index)
+{
+    return weft_direction_of_angles(weft_ubo81_angles(index));
+}
+
+/* Two highlights whose mixture changes from texel to texel: everything is a sum of three functions. */
+static void mixture(int x, int y, weft_vec3 light, weft_vec3 view, double rgb[3])
+{
+    weft_vec3 mirrored = weft_vec3_of(-light.x, -light.y, light.z), back = light;
+    double phong = pow(fmax(0, weft_dot(mirrored, view)), 12), retro = pow(fmax(0, weft_dot(back, view)), 6);
+    double a = 0.2 + 0.1 * (x % 3), b = 0.3 * (y % 4) / 3.0, c = 0.25 * ((x + y) % 2);
+    rgb[0] = light.z * (a + b * phong);
+    rgb[1] = light.z * (a + b * phong + c * retro);
+    rgb[2] = light.z * (0.5 * a + c * retro);
+}
+
+static void fill_mixture(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < layout->image_count; i++) {
+        double rgb[3];
+        mixture(x, y, weft_unit(layout->light[i]), weft_unit(layout->view[layout->view_of_image[i]]), rgb);
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = (float)rgb[c];
+    }
+}
+
+/* A third of the samples of half of the texels say nonsense, and that they do. */
+static void fill_masked(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++) {
+        if ((x + y) % 2 == 0 || (i * 7 + x * 5 + y * 3) % 3 != 0)
+            continue;
+        mask[i] = WEFT_MASK_SATURATED;
+        samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = 900;
+    }
+}
+
+/* All but 46 or so of 3721 samples of a texel are masked. */
+static void fill_mostly_masked(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++)
+        mask[i] = (i + x + y) % 81 == 0 ? 0 : WEFT_MASK_SATURATED;
+}
+
+/* A highlight of another width in every texel, over a dim ground: no few functions say it. */
+static void fill_widths(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < layout->image_count; i++) {
+        weft_vec3 light = layout->light[i], view = layout->view[layout->view_of_image[i]];
+        weft_vec3 axis = weft_unit(weft_vec3_of(0.05 * (x % 7) - 0.15, 0.05 * (y % 5) - 0.1, 1));
+        weft_vec3 half_vector = weft_unit(weft_add(light, view));
+        double shine = pow(fmax(0, weft_dot(half_vector, axis)), 10 + 17 * ((x * 3 + y * 5) % 11));
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = (float)(light.z * (0.02 + 2 * shine));
+    }
+}
+
+/* A highlight that grows towards the horizon with the square of 1 / (l . h). */
+static void fill_growing(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < layout->image_count; i++) {
+        weft_vec3 light = weft_unit(layout->light[i]), view = weft_unit(layout->view[layout->view_of_image[i]]);
+        weft_vec3 half_vector = weft_unit(weft_add(light, view));
+        double incidence = fmax(weft_dot(light, half_vector), 0.1);
+        double shine = pow(half_vector.z, 4 + 4 * ((x * 3 + y * 5) % 4)) / (incidence * incidence);
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = (float)(light.z * 0.01 + 0.1 * shine);
+    }
+}
+
+/* What is held out says nonsense and does not say so. */
+static int is_held(int image)
+{
+    return image % LIGHTS % 9 == 4 || image / LIGHTS % 11 == 5;
+}
+
+static void fill_poisoned(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++) {
+        if (is_held(i))
+            samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = 50;
+    }
+}
+
+static void write_weighed(synthetic_fill *fill, weft_distance distance, bool weighed)
+{
+    weft_error error = {0};
+    weft_dataset_layout layout = {.width = WIDTH,
+                                  .height = HEIGHT,
+                                  .image_count = VIEWS * LIGHTS,
+                                  .view_count = VIEWS,
+                                  .values = WEFT_REFLECTANCE_COSINE,
+                                  .distance = distance,
+                                  .texel_pitch_mm = 0.5};
+    expect_ok(weft_dataset_layout_allocate(&layout, &error), &error);
+    double far = distance == WEFT_NEAR ? 500 : 1;
+    for (int i = 0; i < VIEWS * LIGHTS; i++) {
+        layout.light[i] = weft_scale(direction(i % LIGHTS), far);
+        layout.view[i / LIGHTS] = weft_scale(direction(i / LIGHTS), far);
+        layout.view_of_image[i] = i / LIGHTS;
+    }
+    if (weighed)
+        expect_ok(weft_dataset_layout_allocate_figure(&layout, WEFT_IMAGE_WEIGHT, &error), &error);
+    for (int i = 0; weighed && i < VIEWS * LIGHTS; i++)
+        layout.figure[WEFT_IMAGE_WEIGHT][i] = is_held(i) ? 1e-3 : 3 + i % 2;
+    synthetic_dataset_write(NAME, &layout, fill);
+    weft_dataset_layout_free(&layout);
+}
+
+static void write_dataset(synthetic_fill *fill, weft_distance distance)
+{
+    write_weighed(fill, distance, false);
+}
+
+static weft_compress_options options_for_components(void)
+{
+    weft_compress_options options = weft_compress_default_options();
+    options.lobe_count = 0;
+    options.table = false;
+    options.component_count = COMPONENTS;
+    return options;
+}
+
+static void fit(const weft_compress_options *options, weft_material *material, weft_compress_report *report)
+{
+    weft_error error = {0};
+    weft_dataset *dataset = synthetic_dataset_open(NAME);
+    expect_ok(weft_compress(dataset, options, NULL, material, report, &error), &error);
+    weft_dataset_close(dataset);
+}
+
+/* Relative RMSE against the mixture, over `count` directions that `choose` gives. */
+static double error_over(const weft_material *material, weft_vec3 (*choose)(int), int count)
+{
+    const weft_components *components = material->components;
+    weft_component_maps maps;
+    weft_error error = {0};
+    float factor[3 * COMPONENTS];
+    double square = 0, energy = 0;
+    expect_ok(weft_component_maps_create(components, &maps, &error), &error);
+    for (int i = 0; i < count; i++) {
+        weft_vec3 light = choose(2 * i), view = choose(2 * i + 1);
+        weft_component_factors(&maps, light, view, factor);
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++) {
+            int x = texel % WIDTH, y = texel / WIDTH;
+            weft_rgb value = weft_components_texel(components, components->component_count, factor, 0, x, y, light.z);
+            double rgb[3], found[3] = {value.r, value.g, value.b};
+            mixture(x, y, light, view, rgb);
+            for (int c = 0; c < 3; c++) {
+                square += (found[c] - rgb[c]) * (found[c] - rgb[c]);
+                energy += rgb[c] * rgb[c];
+            }
+        }
+    }
+    weft_component_maps_free(&maps);
+    return sqrt(square / energy);
+}
+
+static weft_vec3 measured(int i)
+{
+    return direction(i * 17 % VIEWS);
+}
+
+/* Between the samples: in steps of the golden angle and of another irrational number, up to 60 degrees. */
+static weft_vec3 between(int i)
+{
+    double cosine = 0.5 + 0.5 * fmod(i * 0.7548776662466927, 1), azimuth = 2.399963229728653 * i;
+    return weft_direction_of_angles((weft_angles){acos(cosine), azimuth});
+}
+
+static void components_follow_samples_and_what_lies_between_them(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, &report);
+    double at = error_over(&material, measured, 60), off = error_over(&material, between, 200);
+    print_message("at samples %.4f, between them %.4f, reported %.4f, trial %.4f and %.4f\n", at, off,
+                  report.components.fitted.relative_rmse, report.components.trial_error[0],
+                  report.components.trial_error[1]);
+    assert_true(at < 0.009);
+    assert_true(off < 0.023);
+    assert_float_equal(report.components.fitted.relative_rmse, at, 0.006);
+    weft_material_free(&material);
+}
+
+static void the_growth_of_a_highlight_chooses_the_map(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_growing, WEFT_FAR);
+    fit(&options, &material, &report);
+    const double *trial = report.components.trial_error;
+    print_message("light %.4f, half vector %.4f, squared %.4f; fitted %.4f\n", trial[0], trial[1], trial[2],
+                  report.components.fitted.relative_rmse);
+    assert_int_equal(material.components->kind, WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED);
+    assert_true(trial[2] < 0.8 * trial[1] && trial[2] < 0.8 * trial[0]);
+    assert_true(report.components.fitted.relative_rmse < trial[2]);
+    weft_material_free(&material);
+}
+
+/* A hundredth of what the components leave may go, in squares. Most of what is left here the maps leave. */
+static void what_is_rounded_does_not_show(void **state)
+{
+    (void)state;
+    weft_material exact, rounded;
+    weft_compress_report of_exact, of_rounded;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &exact, &of_exact);
+    options.rounded = true;
+    fit(&options, &rounded, &of_rounded);
+    double ratio = of_rounded.components.fitted.relative_rmse / of_exact.components.fitted.relative_rmse;
+    print_message("%.5f of the error without rounding\n", ratio);
+    assert_false(weft_components_have_differences(exact.components));
+    assert_true(weft_components_have_differences(rounded.components));
+    assert_true(ratio > 1.0003 && ratio < 1.002);
+    weft_material_free(&exact);
+    weft_material_free(&rounded);
+}
+
+/* Next to nothing is left of these: steps would be finer than half floats are. */
+static void what_is_all_but_exact_is_rounded_no_finer_than_half_floats(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    options.rounded = true;
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    assert_true(weft_components_have_differences(material.components));
+    assert_true(error_over(&material, measured, 60) < 0.009);
+    weft_material_free(&material);
+}
+
+/* Coefficients belong to their maps: what was kept of others is not taken. */
+static void a_checkpoint_is_of_its_kind_of_maps(void **state)
+{
+    (void)state;
+    static const char *const kept = "maps.partial";
+    weft_material of_light, fresh, after;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_widths, WEFT_FAR);
+    options.component_maps = WEFT_COMPONENT_MAPS_OF_HALF_VECTOR;
+    fit(&options, &fresh, NULL);
+    options.checkpoint_path = kept;
+    options.component_maps = WEFT_COMPONENT_MAPS_OF_LIGHT;
+    fit(&options, &of_light, NULL);
+    assert_int_equal(access(kept, F_OK), 0);
+    options.component_maps = WEFT_COMPONENT_MAPS_OF_HALF_VECTOR;
+    fit(&options, &after, NULL);
+    assert_memory_equal(after.components->level[0].coefficient, fresh.components->level[0].coefficient,
+                        WIDTH * HEIGHT * COMPONENTS);
+    unlink(kept);
+    weft_material_free(&of_light);
+    weft_material_free(&fresh);
+    weft_material_free(&after);
+}
+
+/* As bright in every image, so that all count alike, and noise that no layer holds. */
+static void fill_noise(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < 3 * layout->image_count; i++) {
+        double noise = sin(12.9898 * x + 78.233 * y + 37.719 * i) * 43758.5453;
+        samples[i] = (float)(0.3 + 0.1 * (noise - floor(noise)));
+    }
+}
+
+/* Weights of the screen count rounding as they count noise. */
+static void rounding_counts_by_the_weights(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report plain, screen;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_noise, WEFT_FAR);
+    fit(&options, &material, &plain);
+    weft_material_free(&material);
+    options.weights = WEFT_WEIGHTS_SCREEN;
+    fit(&options, &material, &screen);
+    weft_material_free(&material);
+    print_message("steps %.5f, for the screen %.5f\n", plain.components.rounding_step, screen.components.rounding_step);
+    assert_true(plain.components.rounding_step > 0);
+    assert_float_equal(screen.components.rounding_step / plain.components.rounding_step, 1, 0.01);
+}
+
+/* Masked samples neither pull the fit nor count as black. */
+static void masked_samples_leave_no_trace(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_components();
+    options.component_count = 4; /* hardly more than the mixture needs: none is left to make up for wrong ones */
+    write_dataset(fill_masked, WEFT_FAR);
+    fit(&options, &material, &report);
+    print_message("with masks %.4f\n", error_over(&material, between, 200));
+    assert_true(error_over(&material, between, 200) < 0.025);
+    assert_true(report.components.masked > 0);
+    weft_material_free(&material);
+}
+
+static void what_is_held_out_is_not_seen(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    uint8_t held[VIEWS * LIGHTS];
+    weft_compress_options options = options_for_components();
+    for (int i = 0; i < VIEWS * LIGHTS; i++)
+        held[i] = (uint8_t)is_held(i);
+    options.held_out = held;
+    write_dataset(fill_poisoned, WEFT_FAR);
+    fit(&options, &material, &report);
+    print_message("held out %.4f\n", error_over(&material, between, 200));
+    assert_true(error_over(&material, between, 200) < 0.023);
+    weft_material_free(&material);
+}
+
+static void dim_samples_count_for_more_on_a_screen(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report even, screen;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &material, &even);
+    weft_material_free(&material);
+    options.weights = WEFT_WEIGHTS_SCREEN;
+    fit(&options, &material, &screen);
+    weft_material_free(&material);
+    const weft_error_summary *a = &even.components.fitted, *b = &screen.components.fitted;
+    print_message("even %.4f median, %.4f RMSE; for a screen %.4f, %.4f\n", a->median_relative, a->relative_rmse,
+                  b->median_relative, b->relative_rmse);
+    assert_true(b->median_relative < 0.97 * a->median_relative);
+    assert_true(b->relative_rmse < 1.2 * a->relative_rmse);
+}
+
+static void images_of_small_weight_do_no_harm(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    write_weighed(fill_poisoned, WEFT_FAR, true);
+    fit(&options, &material, NULL);
+    assert_true(error_over(&material, between, 200) < 0.023);
+    weft_material_free(&material);
+}
+
+/* A texel of a level has the mean coefficients of what it covers, the narrow ones at the border included. */
+static void levels_are_means(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    const weft_components *components = material.components;
+    assert_int_equal(components->level_count, 5);
+    for (int level = 1; level < components->level_count; level++) {
+        const weft_components_level *at = &components->level[level];
+        for (int i = 0; i < at->width * at->height * COMPONENTS; i++) {
+            int texel = i / COMPONENTS, k = i % COMPONENTS, count = 0;
+            double sum = 0;
+            for (int below = 0; below < WIDTH * HEIGHT; below++) {
+                if (below % WIDTH >> level != texel % at->width || below / WIDTH >> level != texel / at->width)
+                    continue;
+                sum += components->level[0].coefficient[4 * (k / 4 * WIDTH * HEIGHT + below) + k % 4];
+                count++;
+            }
+            int8_t code = at->coefficient[4 * (k / 4 * at->width * at->height + texel) + k % 4];
+            assert_float_equal(code, sum / count, 1.01);
+        }
+    }
+    weft_material_free(&material);
+}
+
+/* The brightest sample of the square of 8 x 8 texels that begins at (x0, y0). */
+static double brightest_of_square(int x0, int y0)
+{
+    double brightest = 0;
+    for (int y = y0; y < y0 + 8 && y < HEIGHT; y++)
+        for (int x = x0; x < x0 + 8 && x < WIDTH; x++)
+            for (int i = 0; i < VIEWS * LIGHTS; i++) {
+                double rgb[3];
+                mixture(x, y, direction(i % LIGHTS), direction(i / LIGHTS), rgb);
+                brightest = fmax(brightest, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+            }
+    return brightest;
+}
+
+/* A step of the codes is 9 %. */
+static void ceilings_are_four_times_the_brightest_sample(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    for (int i = 0; i < 4; i++) {
+        double ratio = (double)weft_ceiling_of_code(material.components->level[0].ceiling[i]) /
+                       brightest_of_square(i % 2 * 8, i / 2 * 8);
+        assert_true(ratio > 3.99 && ratio < 4.4);
+    }
+    weft_material_free(&material);
+}
+
+/* Nothing exceeds four times the brightest sample of the square of texels, from anywhere. */
+static void ceilings_hold_everywhere(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_component_maps maps;
+    weft_error error = {0};
+    weft_compress_options options = options_for_components();
+    float factor[3 * COMPONENTS];
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    expect_ok(weft_component_maps_create(material.components, &maps, &error), &error);
+    double brightest = 0, largest = 0;
+    for (int texel = 0; texel < WIDTH * HEIGHT; texel++)
+        for (int i = 0; i < VIEWS * LIGHTS; i++) {
+            double rgb[3];
+            mixture(texel % WIDTH, texel / WIDTH, direction(i % LIGHTS), direction(i / LIGHTS), rgb);
+            brightest = fmax(brightest, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+        }
+    for (int i = 0; i < 4000; i++) {
+        weft_vec3 light = weft_unit(weft_add(between(i), weft_vec3_of(0.9 * between(3 * i).x, 0, -0.49)));
+        weft_vec3 view = weft_unit(weft_add(between(5 * i), weft_vec3_of(0, 0.9 * between(7 * i).x, -0.49)));
+        weft_component_factors(&maps, light, view, factor);
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++) {
+            weft_rgb value = weft_components_texel(material.components, COMPONENTS, factor, 0, texel % WIDTH,
+                                                   texel / WIDTH, light.z);
+            largest = fmax(largest, fmax(value.r, fmax(value.g, value.b)));
+            assert_true(value.r >= 0 && value.g >= 0 && value.b >= 0);
+            assert_true(light.z > 0.02 || value.r <= 4.4 * brightest * light.z / 0.5);
+        }
+    }
+    print_message("brightest sample %.3f, largest value %.3f\n", brightest, largest);
+    assert_true(largest <= 4.4 * brightest); /* a step of the ceiling is 9 % */
+    weft_component_maps_free(&maps);
+    weft_material_free(&material);
+}
+
+/* The mixture above a ground that is brighter in the right squares, three noisy or shadowed images of 3721, and every
+ * tenth masked. */
+static void fill_ground(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 3; i < layout->image_count; i += 10)
+        mask[i] = WEFT_MASK_SATURATED;
+    for (int i = 0; i < layout->image_count; i++)
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = i % 1200 == 7 ? 0 : samples[3 * i + c] + (float)(layout->light[i].z * (x >= 8));
+}
+
+/* What the mixture has without any highlight, in the darkest texel of a square. Floors are rounded down by 1/16. */
+static void floors_are_what_samples_never_fall_below(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_ground, WEFT_FAR);
+    fit(&options, &material, NULL);
+    assert_true(material.has_floors);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) {
+            double ground = (c == 2 ? 0.1 : 0.2) + (i % 2 == 1);
+            double ratio = (double)weft_floor_of_code(material.components->level[0].floor[3 * i + c]) / ground;
+            assert_true(ratio > 15.0 / 16 && ratio < 1.001);
+        }
+    weft_material_free(&material);
+}
+
+/* Components that ring, eight for highlights of all widths, stay above the ground where nobody photographed. */
+static void floors_keep_the_ground_from_ringing(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_component_maps maps;
+    weft_error error = {0};
+    weft_compress_options options = options_for_components();
+    float factor[3 * COMPONENTS];
+    long held_up = 0, all = 0;
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &material, NULL);
+    expect_ok(weft_component_maps_create(material.components, &maps, &error), &error);
+    for (int i = 0; i < 300; i++) {
+        weft_vec3 light = between(i), view = between(3 * i + 1);
+        weft_component_factors(&maps, light, view, factor);
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++, all++) {
+            weft_rgb value = weft_components_texel(material.components, COMPONENTS, factor, 0, texel % WIDTH,
+                                                   texel / WIDTH, light.z);
+            assert_true((double)value.g >= 0.0187 * (double)light.z);
+            held_up += (double)value.g < 0.0201 * (double)light.z;
+        }
+    }
+    print_message("%ld of %ld values held to a floor\n", held_up, all);
+    assert_true(held_up > all / 20);
+    weft_component_maps_free(&maps);
+    weft_material_free(&material);
+}
+
+/* A dozen photographs do not say how dark a texel gets. */
+static void few_photographs_have_no_floor(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_mostly_masked, WEFT_FAR);
+    fit(&options, &material, NULL);
+    assert_false(material.has_floors);
+    weft_material_free(&material);
+}
+
+static void the_same_bytes_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    weft_material one, three;
+    weft_compress_options options = options_for_components();
+    int threads = omp_get_max_threads();
+    write_dataset(fill_masked, WEFT_FAR);
+    omp_set_num_threads(1);
+    fit(&options, &one, NULL);
+    omp_set_num_threads(3);
+    fit(&options, &three, NULL);
+    omp_set_num_threads(threads);
+    for (int k = 0; k < one.components->level_count; k++)
+        assert_memory_equal(one.components->level[k].coefficient, three.components->level[k].coefficient,
+                            (size_t)(one.level[k].width * one.level[k].height * COMPONENTS));
+    assert_memory_equal(one.components->value, three.components->value,
+                        VIEWS * LIGHTS * COMPONENTS * 3 * sizeof(weft_half));
+    weft_material_free(&one);
+    weft_material_free(&three);
+}
+
+static void odd_numbers_are_refused(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_mixture, WEFT_FAR);
+    weft_dataset *dataset = synthetic_dataset_open(NAME);
+    options.component_count = 6;
+    assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "multiple of 4"));
+    options.component_count = 68;
+    assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
+    weft_dataset_close(dataset);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(components_follow_samples_and_what_lies_between_them),
+        cmocka_unit_test(what_is_rounded_does_not_show),
+        cmocka_unit_test(what_is_all_but_exact_is_rounded_no_finer_than_half_floats),
+        cmocka_unit_test(a_checkpoint_is_of_its_kind_of_maps),
+        cmocka_unit_test(rounding_counts_by_the_weights),
+        cmocka_unit_test(the_growth_of_a_highlight_chooses_the_map),
+        cmocka_unit_test(masked_samples_leave_no_trace),
+        cmocka_unit_test(what_is_held_out_is_not_seen),
+        cmocka_unit_test(images_of_small_weight_do_no_harm),
+        cmocka_unit_test(dim_samples_count_for_more_on_a_screen),
+        cmocka_unit_test(levels_are_means),
+        cmocka_unit_test(ceilings_are_four_times_the_brightest_sample),
+        cmocka_unit_test(ceilings_hold_everywhere),
+        cmocka_unit_test(floors_are_what_samples_never_fall_below),
+        cmocka_unit_test(floors_keep_the_ground_from_ringing),
+        cmocka_unit_test(few_photographs_have_no_floor),
+        cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
+        cmocka_unit_test(odd_numbers_are_refused),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}
