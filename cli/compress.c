@@ -5,8 +5,8 @@
 #include "cli/command/arguments.h"
 #include "cli/compress_held_out.h"
 #include "cli/compress_words.h"
-#include "inspect/model_report.h"
 #include "compress/hold_out/hold_out.h"
+#include "inspect/model_report.h"
 
 #include <limits.h>
 #include <math.h>
