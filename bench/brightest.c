@@ -1,5 +1,5 @@
 /* How bright materials of bad input become: the largest value over many random lights and views, between the samples
- * and beyond them, for every set that leads a fit astray and every kind of model (docs/notes/compression.md). */
+ * and beyond them, for every set that leads a fit astray and every kind of model (docs/notes/lobes.md). */
 #include "btf/dataset/dataset.h"
 #include "compress/compress.h"
 #include "tests/support/adversaries.h"

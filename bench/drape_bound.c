@@ -1,4 +1,4 @@
-/* What bounds a BTF on the drape, by pictures of the geometry of a stitch (docs/notes/traced-truth.md): the noise of
+/* What bounds a BTF on the drape, by pictures of the geometry of a stitch (docs/notes/truth.md): the noise of
  * the truth itself, as another seed tells; a BTF without fault, which is asked of the flat stitch for every place,
  * light and view by itself; and what the player makes of a dataset with more samples a pixel or on the finest level
  * alone. Usage: bench_drape_bound STITCH DATASET.btf.h5 PICTURES/ [PATHS [SIDE]] */

@@ -1,6 +1,6 @@
 /* How far the heights that are found in a dataset are from the surface of the stitch that it shows, whose texels lie on
  * the top face: of one tile, as weft simulate --plane top makes it, or of many, as the virtual rig photographs them
- * (docs/notes/relief.md). Usage: bench_relief STITCH DATASET.btf.h5 */
+ * (docs/notes/geometry.md). Usage: bench_relief STITCH DATASET.btf.h5 */
 #include "base/numeric/statistics.h"
 #include "geometry/light/stitch_sample.h"
 #include "relief/relief.h"

@@ -27,7 +27,7 @@
  */
 enum { SAMPLES_PER_PARAMETER = 4, LEAST_NEAR_IMAGES = 20 };
 
-/* What predicts as well as more do, or nearly (docs/notes/layers.md). */
+/* What predicts as well as more do, or nearly (docs/notes/components.md). */
 static int components_for(int images)
 {
     return images < 20 ? 8 : images < 100 ? 16 : 32;

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The pictures and figures of docs/notes/geometry.md and docs/notes/traced-truth.md that compare drapes: simulates six stitches, compresses them and draws them; with "truth" also
+# The pictures and figures of docs/notes/geometry.md and docs/notes/truth.md that compare drapes: simulates six stitches, compresses them and draws them; with "truth" also
 # traces four of them. About ten minutes of processor time, fifteen with the truth. Usage: geometry-figures.sh BUILD FOLDER [truth]
 set -eu
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/layers.md). */
+/* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/components.md). */
 static const struct {
     int light_side, view_side;
     float light_smoothness, view_smoothness, doubt;
