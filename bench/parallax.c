@@ -1,5 +1,5 @@
 /* What the depth of a sample does to registration, which knows but the plane of the plate: a registered session of the
- * virtual rig against the dataset that weft simulate makes of the same stitch (docs/notes/parallax.md).
+ * virtual rig against the dataset that weft simulate makes of the same stitch (docs/notes/registration.md).
  * Usage: bench_parallax STITCH REGISTERED.btf.h5 SIMULATED.btf.h5 */
 #include "bench/periodic_shift.h"
 #include "btf/dataset/dataset.h"

@@ -153,7 +153,7 @@ static void say_night(const weft_common_options *common, const night *n)
 }
 
 /* They are off by chance, from shot to shot, so the error falls with the root of the number of shots
- * (docs/notes/axes.md#what-can-be-known). */
+ * (docs/notes/capture.md#what-can-be-known). */
 static void say_more_shots(const weft_common_options *common, const weft_axes_report *report)
 {
     double worst_rad = 0;

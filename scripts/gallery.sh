@@ -116,7 +116,7 @@ photographed() {
 
 The virtual rig photographs weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that. The
 analytic cloth is the very one that was photographed, but without its noise, which is a throw of dice: nobody knows where its bright
-flecks lie. Its error is over all samples. It is [mostly of those flecks](notes/photographed-weaves.md) where there are any (denim, twill,
+flecks lie. Its error is over all samples. It is [mostly of those flecks](notes/weaves.md#photographed-weaves) where there are any (denim, twill,
 charmeuse), otherwise of slant views, whose pixels span two texels. A cloth of 300 mm, its three
 pictures under the exposure of the raw one.
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the depth of a sample does to registration (docs/notes/parallax.md): a stitch photographed by the virtual rig and registered, against its
+# What the depth of a sample does to registration (docs/notes/registration.md): a stitch photographed by the virtual rig and registered, against its
 # simulation. About two minutes of processor time. Usage: parallax.sh BUILD [STITCH]    the tile of STITCH must be 1.8 x 1.44 mm
 set -eu
 

@@ -31,7 +31,7 @@ static weft_segment segment_of(const double **a)
     return segment;
 }
 
-/* What one place of the yarn returns at most (docs/notes/model-checks.md, bounds). */
+/* What one place of the yarn returns at most (docs/notes/numerics.md, bounds). */
 static weft_real largest_point(const weft_segment *segment, const weft_yarn_point *point, weft_vec3 light,
                                weft_vec3 view)
 {
