@@ -10,7 +10,7 @@
 /* FOLDER and an ending, whether or not the folder was written with a slash behind it. */
 void weft_synthetic_beside(const char *folder, const char *ending, char path[PATH_MAX]);
 
-/* FOLDER.truth.json: docs/reference/hand.md. Errors: WEFT_SYSTEM. */
+/* FOLDER.truth.json: docs/reference/synthetic.md. Errors: WEFT_SYSTEM. */
 weft_code weft_synthetic_truth_write(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
                                      weft_error *error);
 

@@ -44,7 +44,7 @@ static void the_lens_distorts(void **state)
     assert_float_equal(slope[0] * scale, 30, 0.01);
 }
 
-/* As docs/reference/hand.md has it: what a reader of the truth computes. */
+/* As docs/reference/synthetic.md has it: what a reader of the truth computes. */
 static void the_distortion_is_that_of_the_truth(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # From photographs of a hand to a dataset, as a user does it, held against what is true of the photographs. The virtual
-# hand that takes them shares no formula with what registers them (docs/reference/hand.md).
+# hand that takes them shares no formula with what registers them (docs/reference/synthetic.md).
 set -eu
 weft=$1
 python=$3
