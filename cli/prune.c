@@ -5,7 +5,7 @@
 #include "cli/command/describe.h"
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
-#include "player/window/scene_loader.h"
+#include "player/settings/scene_loader.h"
 
 typedef struct prune_command {
     weft_scene_values values;

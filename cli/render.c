@@ -3,7 +3,7 @@
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
 #include "player/settings/sequence.h"
-#include "player/window/scene_loader.h"
+#include "player/settings/scene_loader.h"
 
 enum { DEFAULT_FPS = 25 };
 

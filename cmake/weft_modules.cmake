@@ -112,13 +112,13 @@ weft_module(player/draw
     FOLDERS player/gl player/mesh player/scene player/texture player/raw player/draw
     USES base base/picture btf/dataset btf/direction btf/material reflectance)
 weft_module(player/settings
-    USES base base/text btf/dataset btf/direction btf/material player/draw)
+    USES base base/picture base/text btf/dataset btf/direction btf/material player/draw reflectance)
 weft_module(compare/pictures
     USES base base/picture player/draw player/settings)
 weft_module(edit/prune
     USES base btf/direction btf/material compare/pictures player/draw player/settings)
 weft_module(player/window
-    FOLDERS player/window player/window/ui player/window/space_mouse
+    FOLDERS player/window player/window/ui
     USES base base/picture btf/dataset btf/material player/draw player/settings reflectance)
 weft_module(compare/truth
     USES base base/picture btf/dataset btf/material compare/pictures geometry player/draw)
@@ -133,7 +133,7 @@ weft_module(inspect
     USES base base/picture base/text btf/dataset btf/direction btf/material btf/session capture compress/hold_out geometry player/draw reflectance)
 
 # The link of a USB device's rule, named where one may not be opened.
-set_source_files_properties(${CMAKE_SOURCE_DIR}/player/window/space_mouse/space_mouse.c PROPERTIES
+set_source_files_properties(${CMAKE_SOURCE_DIR}/player/window/space_mouse.c PROPERTIES
     COMPILE_DEFINITIONS WEFT_UDEV_RULE="${CMAKE_SOURCE_DIR}/assets/udev/70-weft-space-mouse.rules")
 
 weft_libraries()

@@ -3,7 +3,7 @@
 #define WEFT_PLAYER_WINDOW_APPLICATION_H
 
 #include "base/progress.h"
-#include "player/window/scene_loader.h"
+#include "player/settings/scene_loader.h"
 
 enum { WEFT_NOTE_SIZE = 512 };
 

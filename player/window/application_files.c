@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "player/scene/surroundings.h"
-#include "player/window/scene_part.h"
+#include "player/settings/scene_part.h"
 
 #include <stdio.h>
 #include <string.h>

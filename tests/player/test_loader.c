@@ -1,5 +1,5 @@
 /* Loading beside the thread that draws: order, errors, cancelling, closing at any moment. */
-#include "player/window/loader.h"
+#include "player/settings/loader.h"
 
 #include <pthread.h>
 #include <setjmp.h>

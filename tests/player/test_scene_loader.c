@@ -1,6 +1,6 @@
 /* Files of a scene that arrive, are dropped, are broken, and change while a player shows them. */
 #include "player/gl/gl.h"
-#include "player/window/scene_loader.h"
+#include "player/settings/scene_loader.h"
 #include "stage.h"
 
 #include <math.h>

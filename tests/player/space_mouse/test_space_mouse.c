@@ -1,15 +1,11 @@
-/* What the cap does to a camera, the reports of devices, and a spacenavd that misbehaves. */
-#include "player/window/space_mouse/daemon.h"
-#include "player/window/space_mouse/device.h"
+/* What the cap does to a camera, and the reports of devices. */
+#include "player/window/space_mouse.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -109,11 +105,11 @@ static void axes_of_reports_are_those_of_the_picture(void **state)
     const unsigned char translation[] = {1, 0x5e, 0x01, 0xa2, 0xfe, 0xaf, 0x00};
     const unsigned char rotation[] = {2, 0, 0, 0, 0, 0x5e, 0x01};
     weft_space_motion motion = {0};
-    weft_space_device_report(translation, sizeof translation, &motion);
+    weft_space_mouse_report(translation, sizeof translation, &motion);
     assert_float_equal(motion.translation[0], 1, 1e-12);
     assert_float_equal(motion.translation[1], -0.5, 1e-12);
     assert_float_equal(motion.translation[2], -1, 1e-12);
-    weft_space_device_report(rotation, sizeof rotation, &motion);
+    weft_space_mouse_report(rotation, sizeof rotation, &motion);
     assert_float_equal(motion.rotation[1], -1, 1e-12);
     assert_float_equal(motion.translation[0], 1, 1e-12);
 }
@@ -123,7 +119,7 @@ static void a_combined_report_holds_all_six_axes(void **state)
     (void)state;
     const unsigned char report[] = {1, 0x5e, 0x01, 0, 0, 0, 0, 0xa2, 0xfe, 0, 0, 0, 0};
     weft_space_motion motion = {0};
-    weft_space_device_report(report, sizeof report, &motion);
+    weft_space_mouse_report(report, sizeof report, &motion);
     assert_float_equal(motion.translation[0], 1, 1e-12);
     assert_float_equal(motion.rotation[0], -1, 1e-12);
 }
@@ -132,9 +128,9 @@ static void buttons_are_bits_of_report_three(void **state)
 {
     (void)state;
     weft_space_motion motion = {0};
-    weft_space_device_report((const unsigned char[]){3, 2, 1}, 3, &motion);
+    weft_space_mouse_report((const unsigned char[]){3, 2, 1}, 3, &motion);
     assert_int_equal(motion.buttons, 0x102);
-    weft_space_device_report((const unsigned char[]){3, 0, 0, 0, 0, 9, 9}, 7, &motion);
+    weft_space_mouse_report((const unsigned char[]){3, 0, 0, 0, 0, 9, 9}, 7, &motion);
     assert_int_equal(motion.buttons, 0);
 }
 
@@ -149,7 +145,7 @@ static void short_and_unknown_reports_change_nothing(void **state)
         report[0] = (unsigned char)number;
         for (size_t size = 0; size <= sizeof report; size++) {
             weft_space_motion motion = before;
-            weft_space_device_report(report, size, &motion);
+            weft_space_mouse_report(report, size, &motion);
             bool known = (number >= 1 && number <= 2 && size >= 7) || (number == 3 && size >= 2);
             if (!known)
                 assert_memory_equal(&motion, &before, sizeof motion);
@@ -157,49 +153,7 @@ static void short_and_unknown_reports_change_nothing(void **state)
     }
 }
 
-/* ---- spacenavd ---- */
-
-typedef struct fake_daemon {
-    char path[64];
-    int listener, client;
-} fake_daemon;
-
-static void daemon_start(fake_daemon *daemon)
-{
-    struct sockaddr_un address = {.sun_family = AF_UNIX};
-    snprintf(daemon->path, sizeof daemon->path, "spnav-%d.sock", (int)getpid());
-    strcpy(address.sun_path, daemon->path);
-    unlink(daemon->path);
-    daemon->listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    assert_int_equal(bind(daemon->listener, (struct sockaddr *)&address, sizeof address), 0);
-    assert_int_equal(listen(daemon->listener, 4), 0);
-    setenv("SPNAV_SOCKET", daemon->path, 1);
-    daemon->client = -1;
-}
-
-static void daemon_accept(fake_daemon *daemon)
-{
-    daemon->client = accept(daemon->listener, NULL, NULL);
-    assert_true(daemon->client >= 0);
-}
-
-static void daemon_stop(fake_daemon *daemon)
-{
-    close(daemon->client);
-    close(daemon->listener);
-    unlink(daemon->path);
-}
-
-static void send_bytes(const fake_daemon *daemon, const void *bytes, size_t size)
-{
-    assert_int_equal(send(daemon->client, bytes, size, MSG_NOSIGNAL), size);
-}
-
-static void send_event(const fake_daemon *daemon, int type, int x, int y, int z, int rx, int ry, int rz)
-{
-    const int32_t packet[8] = {type, x, y, z, rx, ry, rz, 16};
-    send_bytes(daemon, packet, sizeof packet);
-}
+/* ---- No device ---- */
 
 static weft_space_mouse *new_mouse(void)
 {
@@ -209,120 +163,9 @@ static weft_space_mouse *new_mouse(void)
     return mouse;
 }
 
-static void motions_and_buttons_of_the_daemon_arrive(void **state)
+static void without_a_device_nothing_happens(void **state)
 {
     (void)state;
-    fake_daemon daemon;
-    daemon_start(&daemon);
-    weft_space_mouse *mouse = new_mouse();
-    weft_space_motion motion;
-    assert_int_equal(weft_space_mouse_poll(mouse, 0, &motion), WEFT_SPACE_MOUSE_DAEMON);
-    assert_non_null(strstr(weft_space_mouse_message(mouse), "spacenavd"));
-    daemon_accept(&daemon);
-    send_event(&daemon, 0, 350, 175, -350, 0, 0, 70);
-    send_event(&daemon, 1, 5, 1, 0, 0, 0, 0);
-    assert_int_equal(weft_space_mouse_poll(mouse, 0.1, &motion), WEFT_SPACE_MOUSE_DAEMON);
-    assert_float_equal(motion.translation[0], 1, 1e-12);
-    assert_float_equal(motion.translation[1], 0.5, 1e-12);
-    assert_float_equal(motion.translation[2], 1, 1e-12); /* toward the user */
-    assert_float_equal(motion.rotation[2], -0.2, 1e-12);
-    assert_int_equal(motion.buttons, 1 << 5);
-    send_event(&daemon, 2, 5, 0, 0, 0, 0, 0);
-    weft_space_mouse_poll(mouse, 0.2, &motion);
-    assert_int_equal(motion.buttons, 0);
-    assert_float_equal(motion.translation[0], 1, 1e-12);
-    weft_space_mouse_free(mouse);
-    daemon_stop(&daemon);
-}
-
-static void a_packet_in_parts_is_one_packet(void **state)
-{
-    (void)state;
-    fake_daemon daemon;
-    daemon_start(&daemon);
-    weft_space_mouse *mouse = new_mouse();
-    weft_space_motion motion;
-    weft_space_mouse_poll(mouse, 0, &motion);
-    daemon_accept(&daemon);
-    const int32_t packet[8] = {0, 70, 0, 0, 0, 0, 0, 16};
-    send_bytes(&daemon, packet, 5);
-    weft_space_mouse_poll(mouse, 0.1, &motion);
-    assert_float_equal(motion.translation[0], 0, 0);
-    send_bytes(&daemon, (const char *)packet + 5, sizeof packet - 5);
-    weft_space_mouse_poll(mouse, 0.2, &motion);
-    assert_float_equal(motion.translation[0], 0.2, 1e-12);
-    weft_space_mouse_free(mouse);
-    daemon_stop(&daemon);
-}
-
-/* The daemon is killed while the cap is pushed, and started again. */
-static void a_daemon_that_dies_leaves_the_cap_at_rest_and_is_found_again(void **state)
-{
-    (void)state;
-    fake_daemon daemon;
-    daemon_start(&daemon);
-    weft_space_mouse *mouse = new_mouse();
-    weft_space_motion motion;
-    weft_space_mouse_poll(mouse, 0, &motion);
-    daemon_accept(&daemon);
-    send_event(&daemon, 0, 350, 0, 0, 0, 0, 0);
-    weft_space_mouse_poll(mouse, 0.1, &motion);
-    assert_float_equal(motion.translation[0], 1, 0);
-    daemon_stop(&daemon);
-    assert_int_equal(weft_space_mouse_poll(mouse, 0.2, &motion), WEFT_SPACE_MOUSE_ABSENT);
-    assert_float_equal(motion.translation[0], 0, 0);
-    assert_string_equal(weft_space_mouse_message(mouse), "");
-    daemon_start(&daemon);
-    assert_int_equal(weft_space_mouse_poll(mouse, 1.9, &motion), WEFT_SPACE_MOUSE_ABSENT); /* looks every 2 s */
-    assert_int_equal(weft_space_mouse_poll(mouse, 2.1, &motion), WEFT_SPACE_MOUSE_DAEMON);
-    weft_space_mouse_free(mouse);
-    daemon_accept(&daemon);
-    daemon_stop(&daemon);
-}
-
-static void garbage_from_the_daemon_never_moves_the_cap(void **state)
-{
-    (void)state;
-    uint32_t random = 1;
-    for (int round = 0; round < 64; round++) {
-        fake_daemon daemon;
-        daemon_start(&daemon);
-        weft_space_mouse *mouse = new_mouse();
-        weft_space_motion motion;
-        weft_space_mouse_poll(mouse, 0, &motion);
-        daemon_accept(&daemon);
-        unsigned char bytes[333];
-        for (size_t k = 0; k < sizeof bytes; k++) {
-            random = random * 1664525 + 1013904223;
-            bytes[k] = (unsigned char)(random >> 24 | 1);
-        }
-        send_bytes(&daemon, bytes, sizeof bytes);
-        assert_int_equal(weft_space_mouse_poll(mouse, 0.1, &motion), WEFT_SPACE_MOUSE_ABSENT);
-        assert_memory_equal(&motion, &(weft_space_motion){0}, sizeof motion);
-        weft_space_mouse_free(mouse);
-        daemon_stop(&daemon);
-    }
-}
-
-static void a_motion_beyond_all_devices_is_garbage(void **state)
-{
-    (void)state;
-    fake_daemon daemon;
-    daemon_start(&daemon);
-    weft_space_mouse *mouse = new_mouse();
-    weft_space_motion motion;
-    weft_space_mouse_poll(mouse, 0, &motion);
-    daemon_accept(&daemon);
-    send_event(&daemon, 0, INT32_MIN, 0, 0, 0, 0, 0);
-    assert_int_equal(weft_space_mouse_poll(mouse, 0.1, &motion), WEFT_SPACE_MOUSE_ABSENT);
-    weft_space_mouse_free(mouse);
-    daemon_stop(&daemon);
-}
-
-static void without_daemon_and_device_nothing_happens(void **state)
-{
-    (void)state;
-    setenv("SPNAV_SOCKET", "there-is-no.sock", 1);
     weft_space_mouse *mouse = new_mouse();
     weft_space_motion motion;
     assert_int_equal(weft_space_mouse_poll(mouse, 0, &motion), WEFT_SPACE_MOUSE_ABSENT);
@@ -342,12 +185,7 @@ int main(void)
         cmocka_unit_test(a_combined_report_holds_all_six_axes),
         cmocka_unit_test(buttons_are_bits_of_report_three),
         cmocka_unit_test(short_and_unknown_reports_change_nothing),
-        cmocka_unit_test(motions_and_buttons_of_the_daemon_arrive),
-        cmocka_unit_test(a_packet_in_parts_is_one_packet),
-        cmocka_unit_test(a_daemon_that_dies_leaves_the_cap_at_rest_and_is_found_again),
-        cmocka_unit_test(garbage_from_the_daemon_never_moves_the_cap),
-        cmocka_unit_test(a_motion_beyond_all_devices_is_garbage),
-        cmocka_unit_test(without_daemon_and_device_nothing_happens),
+        cmocka_unit_test(without_a_device_nothing_happens),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* A SpaceMouse through the real libhidapi: reports, a pulled cable, a forbidden node. Runs under umockdev-wrapper. */
-#include "player/window/space_mouse/space_mouse.h"
+#include "player/window/space_mouse.h"
 #include "tests/support/fake_hid.h"
 
 #include <setjmp.h>
@@ -122,7 +122,6 @@ int main(void)
         puts("runs under umockdev-wrapper only");
         return 77;
     }
-    setenv("SPNAV_SOCKET", "there-is-no.sock", 1);
     UMockdevTestbed *testbed = umockdev_testbed_new();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(reports_arrive_in_order, testbed),

@@ -1,8 +1,8 @@
-#include "player/window/scene_loader.h"
+#include "player/settings/scene_loader.h"
 
 #include "btf/file_kind.h"
 #include "player/settings/first_look.h"
-#include "player/window/scene_part.h"
+#include "player/settings/scene_part.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "player/window/loader.h"
+#include "player/settings/loader.h"
 
 #include "base/clock.h"
 

@@ -3,8 +3,8 @@
  *
  * One load runs at a time, in the order they were started (HDF5 is not thread-safe). Functions are for the drawing
  * thread unless they take a weft_load. */
-#ifndef WEFT_PLAYER_WINDOW_LOADER_H
-#define WEFT_PLAYER_WINDOW_LOADER_H
+#ifndef WEFT_PLAYER_SETTINGS_LOADER_H
+#define WEFT_PLAYER_SETTINGS_LOADER_H
 
 #include "base/progress.h"
 #include "base/status.h"

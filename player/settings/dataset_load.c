@@ -1,4 +1,4 @@
-#include "player/window/dataset_load.h"
+#include "player/settings/dataset_load.h"
 
 #include "player/draw/player_parts.h"
 

@@ -1,11 +1,11 @@
 /* A dataset that is read in the background and shown once all of it is on the graphics card; what was shown before
  * stays until then. */
-#ifndef WEFT_PLAYER_WINDOW_DATASET_LOAD_H
-#define WEFT_PLAYER_WINDOW_DATASET_LOAD_H
+#ifndef WEFT_PLAYER_SETTINGS_DATASET_LOAD_H
+#define WEFT_PLAYER_SETTINGS_DATASET_LOAD_H
 
 #include "player/draw/player.h"
 #include "player/raw/plan.h"
-#include "player/window/loader.h"
+#include "player/settings/loader.h"
 
 typedef struct weft_dataset_load weft_dataset_load;
 

@@ -1,6 +1,6 @@
 /* The files of a scene: read in the background, shown in a player as they arrive, and replaced while it plays. */
-#ifndef WEFT_PLAYER_WINDOW_SCENE_LOADER_H
-#define WEFT_PLAYER_WINDOW_SCENE_LOADER_H
+#ifndef WEFT_PLAYER_SETTINGS_SCENE_LOADER_H
+#define WEFT_PLAYER_SETTINGS_SCENE_LOADER_H
 
 #include "btf/material/held_out.h"
 #include "player/settings/scene_options.h"
@@ -47,7 +47,7 @@ weft_code weft_scene_loader_open_mesh(weft_scene_loader *loader, const char *nam
 /* The same for a built-in environment. */
 weft_code weft_scene_loader_open_surroundings(weft_scene_loader *loader, const char *name, weft_error *error);
 
-/* Begins to read again what is shown: all files, or that of a slot (player/window/scene_part.h). Errors: WEFT_SYSTEM.
+/* Begins to read again what is shown: all files, or that of a slot (player/settings/scene_part.h). Errors: WEFT_SYSTEM.
  */
 weft_code weft_scene_loader_reload(weft_scene_loader *loader, weft_error *error);
 weft_code weft_scene_loader_reload_slot(weft_scene_loader *loader, int slot, weft_error *error);

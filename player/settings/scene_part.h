@@ -1,10 +1,10 @@
 /* One file of a scene on its way from the disk to the player. */
-#ifndef WEFT_PLAYER_WINDOW_SCENE_PART_H
-#define WEFT_PLAYER_WINDOW_SCENE_PART_H
+#ifndef WEFT_PLAYER_SETTINGS_SCENE_PART_H
+#define WEFT_PLAYER_SETTINGS_SCENE_PART_H
 
 #include "btf/material/held_out.h"
+#include "player/settings/loader.h"
 #include "player/settings/scene_options.h"
-#include "player/window/loader.h"
 #include "reflectance/weave/weave.h"
 
 typedef enum weft_scene_slot {

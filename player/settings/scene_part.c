@@ -1,11 +1,11 @@
-#include "player/window/scene_part.h"
+#include "player/settings/scene_part.h"
 
 #include "btf/dataset/fingerprint.h"
 #include "btf/file_kind.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
+#include "player/settings/dataset_load.h"
 #include "player/settings/first_look.h"
-#include "player/window/dataset_load.h"
 #include "reflectance/microcylinder/file.h"
 
 #include <stdio.h>
