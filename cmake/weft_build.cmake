@@ -139,7 +139,8 @@ function(weft_plugin name folder)
     list(TRANSFORM plugin_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/${folder}/)
     add_library(${name} MODULE ${plugin_SOURCES})
     target_link_libraries(${name} PRIVATE weft_static ${plugin_USES})
-    set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${WEFT_PLUGINS})
+    # The table of functions that the library looks up is all that a plugin shows.
+    set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${WEFT_PLUGINS} C_VISIBILITY_PRESET default CXX_VISIBILITY_PRESET default)
     add_dependencies(weft_plugins ${name})
 endfunction()
 

@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
-"""Files whose functions call each other in a circle: circles.py NM LIBRARY. Exit code 1 where there are more than MOST."""
+"""Files whose functions call each other in a circle: circles.py NM FOLDER, a folder of object files. Exit code 1 where there are any."""
 import collections
-import re
+import os
 import subprocess
 import sys
 
-MOST = 0
-nm, library = sys.argv[1:]
-listing = subprocess.run([nm, "--extern-only", library], capture_output=True, text=True, check=True).stdout
-defined, wanted, member = {}, collections.defaultdict(set), None
-for line in listing.split("\n"):
-    if re.fullmatch(r"\S+\.o:", line):
-        member = line[:-3]
-    elif line.split()[-2:-1] == ["U"]:
-        wanted[member].add(line.split()[-1])
-    elif line:
-        defined[line.split()[-1]] = member
+nm, folder = sys.argv[1:]
+objects = [os.path.join(path, name) for path, _, names in os.walk(folder) for name in names if name.endswith(".o")]
+defined, wanted = {}, collections.defaultdict(set)
+for line in subprocess.run([nm, "--print-file-name", "--extern-only", *objects], capture_output=True, text=True, check=True).stdout.splitlines():
+    path, _, rest = line.partition(":")
+    unit = os.path.relpath(path, folder).replace("_bridge.cpp", ".c")
+    kind, name = rest.split()[-2:]
+    if kind == "U":
+        wanted[unit].add(name)
+    else:
+        defined[name] = unit
+
 
 def circles(graph):
     """Strongly connected components of more than one node (Tarjan)."""
@@ -49,5 +50,5 @@ for one in set(defined.values()):
     graph.setdefault(one, set())
 found = circles(graph)
 for circle in found:
-    print(", ".join(circle))
-sys.exit(len(found) > MOST)
+    print(", ".join(one.removesuffix(".o") for one in circle))
+sys.exit(bool(found))
