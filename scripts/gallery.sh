@@ -77,8 +77,8 @@ stitches() {
     cat <<'TEXT'
 ## Stitches: yarns in space, simulated, compressed
 
-`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm. Both
-pictures of a stitch stand under the exposure of the raw one.
+`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm. Both pictures of
+a stitch have the exposure of the raw one.
 
 | stitch | raw | compressed | bytes, raw / compressed | ms a frame | error, raw interpolated / compressed | drape |
 | --- | --- | --- | --- | --- | --- | --- |
@@ -114,11 +114,11 @@ photographed() {
     cat <<'TEXT'
 ## Weaves: photographed, compressed, analytic
 
-The virtual rig photographs weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that. The
-analytic cloth is the very one that was photographed, but without its noise, which is a throw of dice: nobody knows where its bright
-flecks lie. Its error is over all samples. It is [mostly of those flecks](notes/weaves.md#photographed-weaves) where there are any (denim, twill,
-charmeuse), otherwise of slant views, whose pixels span two texels. A cloth of 300 mm, its three
-pictures under the exposure of the raw one.
+The virtual rig photographs weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that.
+The analytic cloth is the weave that was photographed, but without its noise, because the places of its bright flecks are
+random. Its error is over all samples. It comes [mostly from those flecks](notes/weaves.md#photographed-weaves) in denim,
+twill and charmeuse, otherwise from steep views, whose pixels span two texels. A cloth of 300 mm; its three pictures have
+the exposure of the raw one.
 
 | weave | raw | compressed | analytic | bytes, raw / compressed / analytic | ms a frame, the same | error, raw interpolated / compressed / analytic | error of the mean BRDF, compressed / analytic | drape, compressed / analytic |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -145,7 +145,8 @@ weaves() {
     cat <<'TEXT'
 ## Weaves: analytic, from published parameters
 
-A few numbers a yarn, no photographs: Irawan and Marschner's model. A cloth of 300 mm, and a ball of 30 mm that shows the yarns.
+A few numbers a yarn, no photographs: Irawan and Marschner's model. A cloth of 300 mm, and a ball of 30 mm that shows the
+yarns.
 
 | weave | cloth | ball |
 | --- | --- | --- |
@@ -164,8 +165,8 @@ microcylinders() {
     cat <<'TEXT'
 ## Cloth of threads without yarns: the microcylinder model
 
-Nobody has photographed these: there is nothing to compress, and no error. At the poles of a ball the direction of the threads
-turns about a point: the glint that meets there is of the ball, not of the cloth.
+These were not photographed: there is nothing to compress, and no error. At the poles of a ball the threads turn about a
+point: the glint there belongs to the ball, not to the cloth.
 
 | cloth | drape | ball | bytes | ms a frame |
 | --- | --- | --- | --- | --- |
@@ -191,9 +192,8 @@ cards() {
     cat <<'TEXT'
 ## A card, really photographed
 
-Nine flash photographs of a card with paper, foil and print, by a phone, from the MaterialGAN project. They may be measured with,
-not passed on, so no picture of them is here. Each is predicted from the other eight; beside so few photographs no frame is
-timed.
+Nine flash photographs of a card with paper, foil and print, by a phone, from the MaterialGAN project. Their licence allows
+measurements, but no copies, so there is no picture here. Each is predicted from the other eight; no frame is timed.
 
 | texels | bytes, raw / compressed | error, raw interpolated / compressed | median error of a photograph left out |
 | --- | --- | --- | --- |
@@ -222,12 +222,12 @@ section_of_page() {
     cat <<'TEXT'
 # Gallery
 
-Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
+Every cloth that comes with Weft, in the studio light of a first picture. `scripts/gallery.sh WEFT` draws this page.
 
-*Raw* is the dataset, interpolated. *Compressed* is the same as a material of 32 layers, the default. Where the cloth is deep,
-both are seen through the [heights](guide/relief.md) that were found in the views. Frames are those of `weft compare`: a drape
-of 400 x 400 pixels, exact, on a software rasteriser. Errors are relative RMSEs on directions that were held out: what the
-other photographs, interpolated, and what a material of them say there. Decibels compare the two pictures of the drape.
+*Raw* is the dataset, interpolated. *Compressed* is the material of 32 components, the default. Deep cloth is seen through
+the [heights](guide/relief.md) that were found in its views. Frames are those of `weft compare`: a drape of 400 x 400
+pixels, exact, on a software rasteriser. Errors are relative RMSEs on held-out views and lights: of the other photographs,
+interpolated, and of a material made of them. Decibels compare the two pictures of the drape.
 
 TEXT
     for section in $all; do
