@@ -51,6 +51,8 @@ int main(int argc, char **argv)
     if (strcmp(argv[1], "--complete") == 0)
         return weft_complete(argc - 2, argv + 2);
     const weft_command *chosen = weft_command_named(argv[1]);
+    if (chosen && strcmp(argv[1], chosen->name) != 0)
+        fprintf(stderr, "weft: '%s' is now called '%s'\n", chosen->former_name, chosen->name);
     if (chosen)
         return run_command(chosen, argc - 1, argv + 1);
     fprintf(stderr, "weft: there is no command '%s'; 'weft --help' lists them\n", argv[1]);

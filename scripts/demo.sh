@@ -31,7 +31,7 @@ step "5/5 Compare them with numbers"
 
 step "60 photographs to a picture: a camera and a lamp in the hand, as you would take them yourself"
 rm -rf "$out/hand"
-"$weft" hand "$weave" --photographs 60 --width 900 --truth-size 0 -q -o "$out/hand"
+"$weft" synthetic "$weave" --photographs 60 --width 900 --truth-size 0 -q -o "$out/hand"
 "$weft" photographs "$out/hand" --size 96x96 --report "$out/hand-report" -o "$out/hand.btf.h5"
 "$weft" compress "$out/hand.btf.h5" -q -o "$out/hand.weft"
 "$weft" tile "$out/hand.weft" --blend -o "$out/hand-tile.weft"

@@ -1,12 +1,12 @@
 #!/bin/sh
-# The photographs of docs/guide/photograph-your-cloth.md, taken by the virtual hand. Usage: photograph-figures.sh WEFT FOLDER
+# The photographs of docs/guide/photograph-your-cloth.md, made by weft synthetic. Usage: photograph-figures.sh WEFT FOLDER
 set -eu
 weft=$(realpath "$1")
 images=$(realpath "$2")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-"$weft" hand checker --opening 40 -o taken --photographs 36 --rubbish 4 --width 1500 --truth-size 8
+"$weft" synthetic checker --opening 40 -o taken --photographs 36 --rubbish 4 --width 1500 --truth-size 8
 
 # strip NAME PHOTOGRAPH...: side by side, upright, as tall as each other.
 strip() {

@@ -7,7 +7,7 @@ weave=$(realpath "$(dirname "$0")/../assets/weaves/wool_gabardine.wv")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-"$weft" hand "$weave" --photographs 60 --width 900 --truth-size 0 -q -o hand
+"$weft" synthetic "$weave" --photographs 60 --width 900 --truth-size 0 -q -o hand
 "$weft" photographs hand --size 96x96 -o hand.btf.h5
 "$weft" compress hand.btf.h5 -o hand.weft
 "$weft" tile hand.weft --blend -o tile.weft

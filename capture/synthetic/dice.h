@@ -1,4 +1,4 @@
-/* Random numbers of one photograph of the virtual hand, in the order in which they are asked for. */
+/* Random numbers of one synthetic photograph, in the order in which they are asked for. */
 #ifndef WEFT_CAPTURE_SYNTHETIC_DICE_H
 #define WEFT_CAPTURE_SYNTHETIC_DICE_H
 

@@ -1,5 +1,5 @@
-/* The virtual hand: takes photographs of a printed sheet as a person would, with a camera, a lamp and bad luck, and
- * writes down what is true of them. It stands in for hardware. */
+/* Synthetic photographs of a printed sheet, as a camera, a lamp and bad luck would give them, with their truth. They
+ * stand in for hardware. */
 #ifndef WEFT_CAPTURE_SYNTHETIC_SYNTHETIC_H
 #define WEFT_CAPTURE_SYNTHETIC_SYNTHETIC_H
 

@@ -15,6 +15,7 @@ typedef struct weft_common_options {
  * values that its options set begin with a weft_common_options. */
 typedef struct weft_command {
     const char *name, *summary; /* as `weft --help` lists them */
+    const char *former_name;    /* accepted for one version, with a note; NULL: none */
     const char *usage;          /* what follows the name */
     const char *documentation;  /* begins with an example */
     const weft_option *options; /* end with {0}; arguments that are known by their place come in their order */
@@ -25,7 +26,7 @@ typedef struct weft_command {
     int (*run)(int argc, char **argv);                   /* argv[0] is "weft NAME"; returns the exit code */
 } weft_command;
 
-extern const weft_command weft_command_capture, weft_command_hand, weft_command_simulate, weft_command_register,
+extern const weft_command weft_command_capture, weft_command_synthetic, weft_command_simulate, weft_command_register,
     weft_command_photographs, weft_command_import;
 extern const weft_command weft_command_tile, weft_command_relief, weft_command_bard, weft_command_compress,
     weft_command_fit_weave, weft_command_prune;
@@ -41,7 +42,7 @@ typedef struct weft_command_entry {
 } weft_command_entry;
 extern const weft_command_entry weft_commands[];
 
-/* The command of that name, or NULL. */
+/* The command of that name or former name, or NULL. */
 const weft_command *weft_command_named(const char *name);
 
 /* The progress reporter of the command line: a line with an ETA that rewrites itself on a terminal, a plain line every

@@ -8,7 +8,7 @@ const weft_command_entry weft_commands[] = {
     {NULL, &weft_command_colour},
     {"Photographs and geometry to a dataset:", &weft_command_capture},
     {NULL, &weft_command_calibrate},
-    {NULL, &weft_command_hand},
+    {NULL, &weft_command_synthetic},
     {NULL, &weft_command_simulate},
     {NULL, &weft_command_register},
     {NULL, &weft_command_photographs},
@@ -30,10 +30,15 @@ const weft_command_entry weft_commands[] = {
     {NULL, NULL},
 };
 
+static bool is_called(const weft_command *command, const char *name)
+{
+    return strcmp(command->name, name) == 0 || (command->former_name && strcmp(command->former_name, name) == 0);
+}
+
 const weft_command *weft_command_named(const char *name)
 {
     const weft_command_entry *entry = weft_commands;
-    while (entry->command && strcmp(entry->command->name, name) != 0)
+    while (entry->command && !is_called(entry->command, name))
         entry++;
     return entry->command;
 }

@@ -62,14 +62,18 @@ expect_error 2 "--tiles needs two numbers above 0" compare a.btf.h5 a.weft --til
 expect_error 2 "--tiles needs --weave" compare a.btf.h5 a.weft --tiles 2,1 -o report
 expect_error 2 "--paths needs --truth" compare a.btf.h5 a.weft --paths 16 -o report
 expect_error 2 "--obj-tiles needs WxH" simulate cloth.stitch --obj cloth.obj --obj-tiles 2,1
-expect_error 2 "needs CLOTH.wv" hand -o folder
-expect_error 2 "one cloth at a time" hand checker cloth.wv -o folder
-expect_error 2 "--rubbish 5 leaves no photograph" hand checker -o folder --photographs 5 --rubbish 5
-expect_error 2 "--set" hand checker -o folder --set handheld
-expect_error 2 "--format" hand checker -o folder --format png
-expect_error 1 "cloth.wv" hand cloth.wv -o folder
-[ ! -e folder ] || fail "weft hand made a folder for nothing"
-expect_error 2 "is not empty" hand checker -o .
+expect_error 2 "needs CLOTH.wv" synthetic -o folder
+expect_error 2 "one cloth at a time" synthetic checker cloth.wv -o folder
+expect_error 2 "--rubbish 5 leaves no photograph" synthetic checker -o folder --photographs 5 --rubbish 5
+expect_error 2 "--set" synthetic checker -o folder --set handheld
+expect_error 2 "--format" synthetic checker -o folder --format png
+expect_error 1 "cloth.wv" synthetic cloth.wv -o folder
+[ ! -e folder ] || fail "weft synthetic made a folder for nothing"
+expect_error 2 "is not empty" synthetic checker -o .
+"$weft" hand --help >former 2>note || fail "the former name of a command is refused"
+"$weft" synthetic --help >now
+cmp -s former now || fail "the former name of a command runs another one"
+[ "$(cat note)" = "weft: 'hand' is now called 'synthetic'" ] || fail "the note on a former name reads '$(cat note)'"
 for seed in 0 -1 2147483648; do
     for command in "eval cloth.wv --at directions.csv" "render --weave cloth.wv -o no.png" "play --weave cloth.wv"; do
         expect_error 2 "--noise needs a whole number from 1 to 2147483647, not '$seed'" $command "--noise=$seed"

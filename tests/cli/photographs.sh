@@ -21,7 +21,7 @@ refused() {
     [ ! -e refused.btf.h5 ] || fail "a dataset was left behind"
 }
 
-"$weft" hand checker --opening 40 -o free --photographs 10 --rubbish 4 --width 900 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o free --photographs 10 --rubbish 4 --width 900 --truth-size 32 -q
 echo nothing >free/broken.jpg
 "$weft" photographs free -o free.btf.h5 --opening 40 --size 32x32 --report report >said 2>/dev/null
 "$python" "$here/photographs.py" free || fail "set free is wrong"
@@ -31,7 +31,7 @@ done
 [ "$(grep -c "left out '" said)" = 5 ] || fail "not five are left out: $(cat said)"
 expect_page report
 
-"$weft" hand checker --opening 40 -o tripod --photographs 8 --set tripod --width 900 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o tripod --photographs 8 --set tripod --width 900 --truth-size 32 -q
 # The list of lamps has one row that is wrong, other case and the folders of another computer.
 awk 'NR == 1 || NR != 4 { if (NR > 1) $1 = "C:\\RTI\\" toupper($1); print } NR == 4 { print $1, -$2, -$3, $4 }' tripod.lp >dome.lp
 "$weft" photographs tripod -o tripod.btf.h5 --opening 40 --size 32x32 --lights dome.lp >said 2>/dev/null
@@ -40,12 +40,12 @@ grep -q "dome.lp:4," said || fail "another row is doubted: $(cat said)"
 "$python" "$here/photographs.py" tripod || fail "set tripod is wrong"
 
 # The pin alone, with no list.
-"$weft" hand checker --opening 40 -o pin --photographs 8 --set tripod --no-balls --seed 9 --width 900 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o pin --photographs 8 --set tripod --no-balls --seed 9 --width 900 --truth-size 32 -q
 "$weft" photographs pin -o pin.btf.h5 --opening 40 --size 32x32 --balls 0 -q 2>/dev/null
 "$python" "$here/photographs.py" pin || fail "set pin is wrong"
 
 # Neither, but three views photographed twice: they tell the tone curve, and so the lamps.
-"$weft" hand checker --opening 40 -o series --photographs 10 --series 3 --no-balls --no-pin --seed 6 --width 900 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o series --photographs 10 --series 3 --no-balls --no-pin --seed 6 --width 900 --truth-size 32 -q
 "$weft" photographs series -o series.btf.h5 --opening 40 --size 32x32 --balls 0 --pin 0 --report series-report >said 2>/dev/null
 "$python" "$here/photographs.py" series || fail "set series is wrong"
 for where in said series-report/index.html; do
@@ -54,7 +54,7 @@ for where in said series-report/index.html; do
 done
 grep -q "focal length.*standard error" series-report/index.html || fail "the report does not tell how well the lens is known"
 
-"$weft" hand checker --opening 40 -o linear --photographs 6 --format exr --width 800 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o linear --photographs 6 --format exr --width 800 --truth-size 32 -q
 "$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" linear || fail "set linear is wrong"
 

@@ -115,5 +115,5 @@ int main(void)
         cmocka_unit_test(the_distortion_is_that_of_the_truth), cmocka_unit_test(rays_meet_in_focus),
         cmocka_unit_test(the_rim_shades_the_corners),
     };
-    return cmocka_run_group_tests_name("hand lens", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("synthetic lens", tests, NULL, NULL);
 }

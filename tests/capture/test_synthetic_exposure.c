@@ -1,4 +1,4 @@
-/* How the virtual hand exposes: tone curves, and views that are photographed twice. */
+/* How synthetic photographs are exposed: tone curves, and views that are photographed twice. */
 #include "capture/synthetic/plan.h"
 
 #include "tests/support/cmocka_all.h"

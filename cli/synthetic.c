@@ -3,16 +3,16 @@
 
 #include <stdlib.h>
 
-typedef struct hand_command {
+typedef struct synthetic_command {
     weft_common_options common;
     weft_synthetic_request request;
-} hand_command;
+} synthetic_command;
 
 static const char *const set_names[] = {"free", "flash", "tripod", "stepped", NULL};
 static const char *const format_names[] = {"jpeg", "tiff", "exr", NULL};
 static const char *const curve_names[] = {"contrast", "soft", NULL};
 
-#define PLACE(field) offsetof(hand_command, request.field)
+#define PLACE(field) offsetof(synthetic_command, request.field)
 
 static const weft_option option_table[] = {
     {.argument = "CLOTH", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = PLACE(content)},
@@ -67,7 +67,7 @@ static const weft_option option_table[] = {
 
 static weft_code check(void *values, weft_error *error)
 {
-    const weft_synthetic_request *request = &((const hand_command *)values)->request;
+    const weft_synthetic_request *request = &((const synthetic_command *)values)->request;
     if (request->rubbish_count >= request->photograph_count)
         return weft_fail(error, WEFT_BAD_USAGE, "--rubbish %d leaves no photograph of %d", request->rubbish_count,
                          request->photograph_count);
@@ -79,10 +79,10 @@ static weft_code check(void *values, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    hand_command command = {.request = weft_synthetic_request_default()};
+    synthetic_command command = {.request = weft_synthetic_request_default()};
     char warning[WEFT_MESSAGE_SIZE] = "";
     weft_error error = {0};
-    weft_arguments_parse(&weft_command_hand, argc, argv, &command);
+    weft_arguments_parse(&weft_command_synthetic, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
     weft_code code = weft_synthetic_run(&command.request, &progress, warning, &error);
     if (warning[0])
@@ -90,19 +90,20 @@ static int run(int argc, char **argv)
     if (code == WEFT_OK)
         weft_command_say(&command.common, "%s: %d photographs", command.request.folder,
                          command.request.photograph_count);
-    return weft_command_exit("hand", &command.common, code, &error);
+    return weft_command_exit("synthetic", &command.common, code, &error);
 }
 
-const weft_command weft_command_hand = {
-    .name = "hand",
-    .summary = "photograph a printed sheet as a hand would: the virtual hand",
+const weft_command weft_command_synthetic = {
+    .name = "synthetic",
+    .former_name = "hand",
+    .summary = "make synthetic photographs of a printed sheet, with known truth",
     .usage = "CLOTH -o FOLDER",
     .documentation =
-        "Example: weft hand assets/weaves/silk_charmeuse.wv -o silk/\n\n"
-        "Takes photographs of a cloth in the opening of the printed sheet, as a person would with a camera, a lamp, "
-        "two "
-        "mirror balls and a pin. What is true of them goes to FOLDER.truth.json and FOLDER.truth.btf.h5, beside the "
-        "folder. CLOTH is a weave, a stitch, or the word checker: patches whose reflectance is a formula.",
+        "Example: weft synthetic assets/weaves/silk_charmeuse.wv -o silk/\n\n"
+        "Traces photographs of a cloth in the opening of the printed sheet, as a camera, a lamp, two mirror balls and "
+        "a "
+        "pin would give them. The true geometry and reflectance go to FOLDER.truth.json and FOLDER.truth.btf.h5, "
+        "beside the folder. CLOTH is a weave, a stitch, or the word checker: patches whose reflectance is a formula.",
     .options = option_table,
     .needs = "CLOTH.wv, CLOTH.stitch or checker, and -o FOLDER",
     .surplus = "one cloth at a time",

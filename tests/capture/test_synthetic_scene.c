@@ -283,5 +283,5 @@ int main(void)
         cmocka_unit_test(a_ball_mirrors_the_lamp),
         cmocka_unit_test(a_ball_mirrors_the_window),
     };
-    return cmocka_run_group_tests_name("hand scene", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("synthetic scene", tests, NULL, NULL);
 }

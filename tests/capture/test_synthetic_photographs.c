@@ -396,5 +396,5 @@ int main(void)
         cmocka_unit_test(the_truth_is_written_down),        cmocka_unit_test(a_tripod_stands),
         cmocka_unit_test(a_folder_in_use_is_left_alone),
     };
-    return cmocka_run_group_tests_name("hand photographs", tests, scratch_folder_enter, scratch_folder_leave);
+    return cmocka_run_group_tests_name("synthetic photographs", tests, scratch_folder_enter, scratch_folder_leave);
 }
