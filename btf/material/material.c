@@ -128,6 +128,15 @@ weft_code weft_material_add_models(weft_material *material, weft_error *error)
     return code;
 }
 
+void weft_material_set_ceiling(weft_material_level *level, size_t texel, float value)
+{
+    const weft_half largest = 0x7bff;
+    weft_half ceiling = value > 0 ? weft_half_of_float(value) : 0;
+    if (value > 0 && weft_float_of_half(ceiling) < value)
+        ceiling++;
+    level->diffuse[4 * texel + 3] = ceiling < largest ? ceiling : largest;
+}
+
 static void free_level(weft_material_level *level)
 {
     free(level->frame);

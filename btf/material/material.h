@@ -3,7 +3,8 @@
  *
  * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi, with a table of lights beside the one of views:
  *     f(l, v) = T(v) S(l) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)
- * l', v' in the frame of the texel. Multiplied by l_z it is the dataset's reflectance times cosine. */
+ * l', v' in the frame of the texel. Where the largest channel of f is above the ceiling of the texel, f is scaled down
+ * to it. Multiplied by l_z it is the dataset's reflectance times cosine. */
 #ifndef WEFT_BTF_MATERIAL_MATERIAL_H
 #define WEFT_BTF_MATERIAL_MATERIAL_H
 
@@ -31,7 +32,7 @@ typedef struct weft_material_level {
     int width, height;
     int16_t *frame;     /* [height][width][3]: n_x, n_y (x 32767; n_z = sqrt(1 - n_x^2 - n_y^2)), azimuth of the tangent
                            about n, from x projected on the tangent plane, / pi (x 32767) */
-    weft_half *diffuse; /* [height][width][4]: rho r, g, b, 0 */
+    weft_half *diffuse; /* [height][width][4]: rho r, g, b; the ceiling of the texel, 0: none */
     weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N */
     uint8_t *table; /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
                        NULL where the material has no table (T = 1) */
@@ -71,6 +72,9 @@ typedef struct weft_material {
 weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
+
+/* Sets the ceiling of a texel: the least half float that is not below `value`; 0 or less: none. Thread-safe. */
+void weft_material_set_ceiling(weft_material_level *level, size_t texel, float value);
 
 /* Takes the finest level away, of components, heights and what is seen, too: the same material with a quarter of the
  * texels. Does nothing where there is but one. */

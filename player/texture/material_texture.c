@@ -46,7 +46,7 @@ static void pack_base(const weft_material_level *level, size_t texel, uint32_t w
     word[0] = packed((uint16_t)rotation[0], (uint16_t)rotation[1]);
     word[1] = packed((uint16_t)rotation[2], (uint16_t)rotation[3]);
     word[2] = packed(diffuse[0], diffuse[1]);
-    word[3] = packed(diffuse[2], 0);
+    word[3] = packed(diffuse[2], diffuse[3]);
 }
 
 static void pack_lobe(const weft_material_level *level, size_t texels, size_t texel, int lobe, uint32_t word[2])

@@ -33,6 +33,16 @@ weft_real weft_view_table_fit(const weft_real *f, const weft_real *r, int count)
     return square > 0 ? (weft_real)(product / square) : 1;
 }
 
+weft_rgba weft_under_ceiling(weft_rgba value, weft_real ceiling)
+{
+    weft_real largest = fmax(value.r, fmax(value.g, value.b));
+    if (!(ceiling > 0 && largest > ceiling))
+        return value;
+    weft_real scale = ceiling / largest;
+    return (weft_rgba){fmin(scale * value.r, ceiling), fmin(scale * value.g, ceiling), fmin(scale * value.b, ceiling),
+                       value.a};
+}
+
 weft_rgba weft_view_table_interpolate(const weft_rgba *values, const weft_barycentric *at)
 {
     weft_rgba sum = {0};

@@ -10,3 +10,10 @@ float lobe_power(float a, float n)
     float power = exp2(min(n * log2(max(a, 1.2e-38)), LOBE_MAX_EXPONENT));
     return a >= 0.0 ? power : 0.0;
 }
+
+// Scaled so that no channel is above `ceiling`; 0: there is no ceiling.
+vec3 under_ceiling(vec3 value, float ceiling)
+{
+    float largest = max(value.r, max(value.g, value.b));
+    return ceiling > 0.0 && largest > ceiling ? min(value * (ceiling / largest), ceiling) : value;
+}

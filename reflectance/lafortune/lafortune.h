@@ -28,6 +28,9 @@ typedef struct weft_rgba {
 /* sum of weights times values [count]: interpolation in a table. */
 weft_rgba weft_view_table_interpolate(const weft_rgba *values, const weft_barycentric *at);
 
+/* `value`, scaled so that no channel is above `ceiling`; its hue stays. 0: there is no ceiling. */
+weft_rgba weft_under_ceiling(weft_rgba value, weft_real ceiling);
+
 /* ---- A texel of a material ---- */
 
 /* Where the tables of a material know their values; a member is NULL without its table. */

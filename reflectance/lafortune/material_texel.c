@@ -5,6 +5,11 @@
 
 #include <stdbool.h>
 
+static weft_real ceiling_of(const weft_material_level *level, size_t texel)
+{
+    return weft_float_of_half(level->diffuse[4 * texel + 3]);
+}
+
 static weft_real rho_of(const weft_material_level *level, size_t texel, int channel)
 {
     return weft_float_of_half(level->diffuse[4 * texel + (size_t)channel]);
@@ -66,7 +71,7 @@ static weft_rgba texel_value(const weft_material *material, const weft_material_
     value.r *= lit.r * channel_value(material, level, texel, 0, l, v);
     value.g *= lit.g * channel_value(material, level, texel, 1, l, v);
     value.b *= lit.b * channel_value(material, level, texel, 2, l, v);
-    return value;
+    return weft_under_ceiling(value, ceiling_of(level, texel));
 }
 
 static table_corners corners_of(const weft_material *material, const weft_table_directions *directions, weft_vec3 light,

@@ -140,6 +140,38 @@ static void compressed_equals_c_with_a_light_table(void **state)
     compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
 }
 
+/* A third of the texels has a ceiling that its highlight is above, another third one that it never reaches. */
+static void set_ceilings(weft_material *material)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++)
+            weft_material_set_ceiling(level, i, i % 3 == 0 ? 0 : i % 3 == 1 ? 0.2f : 100);
+    }
+}
+
+static void compare_under_ceilings(void **state, const char *what, int views, weft_scene scene)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    material_model model = {0};
+    stage_material(20, 13, 2, views, 0, &model.material);
+    set_ceilings(&model.material);
+    expect_ok(weft_table_directions_create(&model.material, &model.directions, &error), &error);
+    expect_ok(weft_player_set_material(s->player, &model.material, &error), &error);
+    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
+    weft_table_directions_free(&model.directions);
+    weft_material_free(&model.material);
+}
+
+static void compressed_equals_c_under_ceilings(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    compare_under_ceilings(state, "ceilings, 81 views", 81, scene);
+    scene.repeat = 37;
+    compare_under_ceilings(state, "ceilings, no views, minified", 0, scene);
+}
+
 /* ---- Components ---- */
 
 typedef struct component_model {
@@ -674,6 +706,7 @@ int main(void)
         cmocka_unit_test(compressed_equals_c_under_grazing_light_from_behind),
         cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
         cmocka_unit_test(compressed_equals_c_with_a_light_table),
+        cmocka_unit_test(compressed_equals_c_under_ceilings),
         cmocka_unit_test(compressed_equals_c_in_the_dark),
         cmocka_unit_test(components_equal_c),
         cmocka_unit_test(components_equal_c_between_levels),

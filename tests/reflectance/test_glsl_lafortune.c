@@ -4,10 +4,10 @@
 #include "tests/reflectance/extremes.h"
 #include "tests/reflectance/twin_stage.h"
 
-/* a = (base, exponent). */
+/* a = (base, exponent); b = (red, green, blue, ceiling). */
 static const char twin_source[] = "vec4 twin(sampler2D table, vec4 a, vec4 b, vec4 c)\n"
                                   "{\n"
-                                  "    return vec4(lobe_power(a.x, a.y));\n"
+                                  "    return vec4(under_ceiling(b.rgb, b.a), lobe_power(a.x, a.y));\n"
                                   "}\n";
 
 static void fill_queries(twin_queries queries)
@@ -18,6 +18,9 @@ static void fill_queries(twin_queries queries)
         weft_real exponent = random_bits(&random) % 8 ? extremes_logarithmic(&random, 0, 3.9) : 0;
         queries[0][i][0] = (float)base;
         queries[0][i][1] = (float)exponent;
+        for (int c = 0; c < 3; c++)
+            queries[1][i][c] = (float)extremes_logarithmic(&random, -6, 30);
+        queries[1][i][3] = random_bits(&random) % 4 ? (float)extremes_logarithmic(&random, -7, 5) : 0;
     }
 }
 
@@ -34,6 +37,19 @@ static bool agrees(const float query[4], float seen)
     return expected < smallest ? (double)seen < 2 * smallest : fabs(log((double)seen / expected)) <= tolerance;
 }
 
+static bool agrees_under_ceiling(const float query[4], const float seen[3])
+{
+    weft_rgba expected = weft_under_ceiling(
+        (weft_rgba){(weft_real)query[0], (weft_real)query[1], (weft_real)query[2], 1}, (weft_real)query[3]);
+    const double value[3] = {expected.r, expected.g, expected.b};
+    bool agrees = true;
+    for (int c = 0; c < 3; c++) {
+        agrees = agrees && fabs((double)seen[c] - value[c]) <= 1e-5 * value[c] + 1e-36;
+        agrees = agrees && (query[3] == 0 || seen[c] <= query[3]);
+    }
+    return agrees;
+}
+
 static void compare_dialect(weft_gl_profile profile)
 {
     static twin_queries queries;
@@ -43,9 +59,13 @@ static void compare_dialect(weft_gl_profile profile)
     fill_queries(queries);
     twin_run(profile, sources, &(twin_table){unused, 1, 1}, queries, result);
     for (int i = 0; i < TWIN_QUERIES; i++) {
-        if (!agrees(queries[0][i], result[i][0]))
+        if (!agrees(queries[0][i], result[i][3]))
             fail_msg("%.9g to the power of %.9g is %.9g", (double)queries[0][i][0], (double)queries[0][i][1],
-                     (double)result[i][0]);
+                     (double)result[i][3]);
+        if (!agrees_under_ceiling(queries[1][i], result[i]))
+            fail_msg("%.9g, %.9g, %.9g under %.9g is %.9g, %.9g, %.9g", (double)queries[1][i][0],
+                     (double)queries[1][i][1], (double)queries[1][i][2], (double)queries[1][i][3], (double)result[i][0],
+                     (double)result[i][1], (double)result[i][2]);
     }
 }
 

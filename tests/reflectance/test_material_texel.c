@@ -163,6 +163,95 @@ static void levels_are_mixed_and_clamped(void **state)
     assert_same_colour(sample(m, -1, 0.3, 0.4), fine);
 }
 
+/* ---- Ceilings ---- */
+
+static double largest_of(weft_rgba value)
+{
+    return fmax(value.r, fmax(value.g, value.b));
+}
+
+static void set_ceilings(const model *m, float value)
+{
+    for (int k = 0; k < m->material.level_count; k++) {
+        weft_material_level level = m->material.level[k];
+        for (int t = 0; t < level.width * level.height; t++)
+            weft_material_set_ceiling(&level, (size_t)t, value);
+    }
+}
+
+/* A path of directions through the mirror direction of `view`, where the lobes are largest. */
+static weft_vec3 light_on_path(double t)
+{
+    return weft_unit(weft_vec3_of(0.48 + t, -0.36 + 0.4 * t, 0.8));
+}
+
+static weft_rgba on_path(const model *m, double t)
+{
+    return weft_material_texel(&m->material, &m->directions, 0, 2, 1, light_on_path(t), view);
+}
+
+/* Half way between the least and the largest value of the path. */
+static float ceiling_of_path(const model *m)
+{
+    double least = INFINITY, most = 0;
+    for (double t = -2; t < 2; t += 0.01) {
+        double value = largest_of(on_path(m, t));
+        least = fmin(least, value);
+        most = fmax(most, value);
+    }
+    assert_true(most > 1.5 * least);
+    return (float)(0.5 * (least + most));
+}
+
+static void a_ceiling_is_never_exceeded_and_keeps_hue_and_opacity(void **state)
+{
+    const model *m = *state;
+    const float ceiling = ceiling_of_path(m);
+    int limited = 0, below = 0;
+    for (double t = -2; t < 2; t += 0.01) {
+        weft_rgba free = on_path(m, t);
+        set_ceilings(m, ceiling);
+        weft_rgba held = on_path(m, t);
+        double most = weft_float_of_half(m->material.level[0].diffuse[3]), share = fmin(1, most / largest_of(free));
+        set_ceilings(m, 0);
+        assert_true(largest_of(held) <= most);
+        assert_near(held.r, share * free.r);
+        assert_near(held.g, share * free.g);
+        assert_near(held.b, share * free.b);
+        assert_near(held.a, free.a);
+        limited += share < 1;
+        below += share == 1;
+    }
+    assert_true(limited > 20 && below > 20);
+}
+
+/* A step of the value under the ceiling is at most twice that of the value without it. */
+static void a_ceiling_makes_no_jump(void **state)
+{
+    const model *m = *state;
+    const float ceiling = ceiling_of_path(m);
+    for (double t = -2; t < 2; t += 0.001) {
+        double step = largest_of(on_path(m, t + 0.001)) - largest_of(on_path(m, t));
+        set_ceilings(m, ceiling);
+        weft_rgba a = on_path(m, t), b = on_path(m, t + 0.001);
+        set_ceilings(m, 0);
+        assert_true(fabs(b.r - a.r) <= 2 * fabs(step) + 1e-4 && fabs(b.b - a.b) <= 2 * fabs(step) + 1e-4);
+    }
+}
+
+static void ceilings_are_stored_rounded_up(void **state)
+{
+    const model *m = *state;
+    weft_material_level level = m->material.level[0];
+    const float value[] = {-1, 0, (float)NAN, 1e-12f, 0.2f, 1, 65504, 1e9f};
+    const weft_half code[] = {0, 0, 0, 1, 0x3267, 0x3c00, 0x7bff, 0x7bff};
+    for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
+        weft_material_set_ceiling(&level, 4, value[i]);
+        assert_int_equal(level.diffuse[4 * 4 + 3], code[i]);
+    }
+    weft_material_set_ceiling(&level, 4, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -171,6 +260,9 @@ int main(void)
         cmocka_unit_test(sample_at_a_texel_centre_is_the_texel),
         cmocka_unit_test(sample_is_bilinear_and_repeats),
         cmocka_unit_test(levels_are_mixed_and_clamped),
+        cmocka_unit_test(a_ceiling_is_never_exceeded_and_keeps_hue_and_opacity),
+        cmocka_unit_test(a_ceiling_makes_no_jump),
+        cmocka_unit_test(ceilings_are_stored_rounded_up),
     };
     return cmocka_run_group_tests_name("material texel", tests, make_model, free_model);
 }

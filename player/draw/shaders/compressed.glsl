@@ -35,7 +35,8 @@ vec4 texel_value(vec2 texel, SurfacePoint point, Entries views)
     uvec4 base = textureLod(material_texel, vec3(texel, 0.0), 0.0);
     mat3 axes = axes_of_quaternion(vec4(fractions_of(base.x), fractions_of(base.y))); // in those of the surface
     vec3 view = point.view * axes;
-    vec3 diffuse = vec3(halves_of(base.z), halves_of(base.w).x);
+    vec2 blue_and_ceiling = halves_of(base.w);
+    vec3 diffuse = vec3(halves_of(base.z), blue_and_ceiling.x);
     vec4 lobe[3 * LOBES + 2];
     for (int i = 0; i < 3 * LOBES; i += 2) {
         uvec4 pair = textureLod(material_texel, vec3(texel, float(1 + i / 2)), 0.0);
@@ -45,22 +46,23 @@ vec4 texel_value(vec2 texel, SurfacePoint point, Entries views)
     // One light is turned into the axes of the surface, once for all texels; for many, the axes of the texel into the
     // world.
     axes = ONE_LIGHT ? axes : point.axes * axes;
-    vec3 sum = vec3(0.0);
+    vec4 table = vec4(1.0);
+    if (VIEW_TABLE)
+        table = table_value(material_table, texel, views);
+    vec3 of_view = mix(vec3(1.0), table.rgb, view_table_share), sum = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i);
         if (irradiance == vec3(0.0))
             continue;
+        vec3 light = ONE_LIGHT ? surface_light(point, i) : world_light(i);
+        vec3 value = of_view * (diffuse + lobes_value(lobe, light * axes));
         if (LIGHT_TABLE) {
             Entries lights = table_entries(find_corners(1, surface_light(point, i)), light_table_columns);
-            irradiance *= mix(vec3(1.0), table_value(material_light_table, texel, lights).rgb, light_table_share);
+            value *= mix(vec3(1.0), table_value(material_light_table, texel, lights).rgb, light_table_share);
         }
-        vec3 light = ONE_LIGHT ? surface_light(point, i) : world_light(i);
-        sum += irradiance * (diffuse + lobes_value(lobe, light * axes));
+        sum += irradiance * under_ceiling(value, blue_and_ceiling.y);
     }
-    if (!VIEW_TABLE)
-        return vec4(sum, 1.0);
-    vec4 table = table_value(material_table, texel, views);
-    return vec4(sum * mix(vec3(1.0), table.rgb, view_table_share), table.a);
+    return vec4(sum, table.a);
 }
 
 vec4 level_value(int level, SurfacePoint point, Entries views)
