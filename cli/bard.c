@@ -20,8 +20,8 @@ static const weft_option option_table[] = {
     {"output", 'o', "NAME.bard.h5", "The dataset to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(bard_command, output)},
     {"diffuse", .argument = "SHARE",
-     .help = "Share, 0 to 1, of a texel's smallest value under the light along the normal that is diffuse: neither "
-             "mapped nor scaled (default: 1; the article's black satin has none, 0)",
+     .help = "Diffuse share, 0 to 1, of the smallest value of a texel under the light along the normal; it is neither "
+             "mapped nor scaled (default: 1; the article's black satin: 0)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(bard_command, options.diffuse_share), .low = 0, .high = 1},
     {"map", .argument = "WHICH",
      .help = "plane: turn the view in its plane (default); printed: the article's eqs. 9 and 10",
@@ -80,10 +80,10 @@ const weft_command weft_command_bard = {
     .name = "bard",
     .summary = "predict a dataset from the photographs under one light",
     .usage = "NAME.btf.h5 -o NAME.bard.h5",
-    .documentation = "Example: weft bard satin.btf.h5 -o satin.bard.h5\n\n"
-                     "Predicts every image of a dataset from the photographs under one light, the one "
-                     "along the normal (BARD, made for satin), says how far the predictions are from "
-                     "the other photographs, and writes them as a dataset of the same layout.",
+    .documentation =
+        "Example: weft bard satin.btf.h5 -o satin.bard.h5\n\n"
+        "Predicts every image of a dataset from the photographs under one light, along the normal (BARD, made "
+        "for satin). Prints the error against the other photographs, and writes a dataset of the same layout.",
     .options = option_table,
     .needs = "NAME.btf.h5 and -o NAME.bard.h5",
     .surplus = "one dataset at a time",

@@ -29,13 +29,11 @@ static const weft_option option_table[] = {
     {"output", 'o', "POSES.json", "Where the axes truly are", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(calibrate_command, output)},
     {"plan", .argument = "ubo81|ubo151|FILE.csv",
-     .help = "The night that errors are expected for: the views of 81 directions (default) or 151, or those of a table "
-             "as weft "
-             "capture takes it",
+     .help = "Predict the errors for this plan: the views of 81 directions (default) or 151, or those of a table as "
+             "weft capture takes it",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(calibrate_command, plan)},
     {"lens", .argument = "WHICH",
-     .help = "Whether the lens stays as it is (held, default) or is found with the axes where the photographs tell it "
-             "(free)",
+     .help = "held (default): keep the lens; free: find it with the axes, as far as the photographs determine it",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(calibrate_command, lens), .words = lens_words},
     {0},
 };
@@ -122,34 +120,35 @@ static void say_night(const weft_common_options *common, const night *n)
     const weft_expected_pose *worst = &e->worst;
     if (n->unreachable > 0)
         weft_command_say(common,
-                         "%d of the %d views of the plan were left aside: the axes of these shots do not reach "
-                         "them",
+                         "%d of the %d views of the plan are not predicted: they need an axis that did not turn in "
+                         "these shots",
                          n->unreachable, n->views);
     if (e->poses == 0) {
         weft_command_say(common,
-                         "NOT good enough: no view of the plan is reached; turn in the shots what is to turn in "
+                         "NOT good enough: no view of the plan is reached; turn the same axes in the shots as in "
                          "the plan");
         return;
     }
     weft_command_say(common, "expected before the target is looked at, %d poses: %.3f texels of 64 median, %.3f worst",
                      e->poses, e->median_texels, worst->texels);
     weft_command_say(common,
-                     "  the worst with turns of %.1f %.1f %.1f degrees: %.3f because the axes are known no better, "
-                     "%.3f because they do not repeat",
+                     "  the worst with turns of %.1f %.1f %.1f degrees: %.3f from the uncertainty of the axes, %.3f "
+                     "from poor repeatability",
                      worst->turns.deg[0], worst->turns.deg[1], worst->turns.deg[2], worst->model_texels,
                      worst->scatter_texels);
     weft_command_say(common, "  the direction of a view: %.4f degrees at worst", weft_deg_of_rad(e->direction_rad));
     if (n->finds && n->directs && !n->good_enough)
-        weft_command_say(common, "good enough for %d of the %d views: registration looks %.0f texels far", e->poses,
+        weft_command_say(common, "good enough for %d of the %d views: registration searches %.0f texels", e->poses,
                          n->views, n->allowed_texels);
     else if (n->good_enough)
-        weft_command_say(common, "good enough: registration looks %.0f texels far", n->allowed_texels);
+        weft_command_say(common, "good enough: registration searches %.0f texels", n->allowed_texels);
     else if (worst->scatter_texels > worst->model_texels)
         weft_command_say(common, "NOT good enough: the axes do not repeat; look for play, raise backlash_deg and "
                                  "settle_s in the rig file, and fasten the target");
     else
-        weft_command_say(common, "NOT good enough: the shots do not tell the axes; take more, over the whole reach of "
-                                 "every axis");
+        weft_command_say(common,
+                         "NOT good enough: the shots do not determine the axes; take more, over the whole range of "
+                         "every axis");
 }
 
 /* They are off by chance, from shot to shot, so the error falls with the root of the number of shots
@@ -178,8 +177,9 @@ static void say_poses(const calibrate_command *command, const weft_axes_sighting
                      command->output, report->used, sightings->count, file->held_out_rms_px, file->rms_px);
     say_lines(common, "  ", &report->told);
     say_more_shots(common, report);
-    say_lines(common, "not told: ", &report->not_told);
-    weft_command_say(common, "not told: the axes of the light are not seen by the camera; they stay as specified");
+    say_lines(common, "not determined: ", &report->not_told);
+    weft_command_say(common,
+                     "not determined: the axes of the light are not seen by the camera; they stay as specified");
     say_night(common, n);
 }
 
@@ -287,14 +287,13 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_calibrate = {
     .name = "calibrate",
-    .summary = "find out where the axes of a rig truly are",
+    .summary = "calibrate the axes of a rig from photographs of the target",
     .usage = "SESSION -o POSES.json",
     .documentation =
         "Example: weft calibrate series/ -o rig.poses.json\n\n"
         "Finds the axes that turn camera and sample, and where the camera looks, from a session of about 20 "
-        "photographs of the target, taken from all over the reach of the axes (assets/plans/calibration.csv). Tells "
-        "how "
-        "far off the poses of a night will be. The rig file names the result under 'poses'.",
+        "photographs of the target over the whole range of the axes (assets/plans/calibration.csv). Predicts "
+        "the pose errors of a capture run. The rig file names the result under 'poses'.",
     .options = option_table,
     .needs = "SESSION and -o POSES.json",
     .surplus = "one session at a time",

@@ -21,16 +21,16 @@ static const weft_option option_table[] = {
      .is_required = true,
      .kind = WEFT_OPTION_INPUT,
      .offset = offsetof(colour_command, input)},
-    {"output", 'o', "COLOUR.json", "The colour to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
+    {"output", 'o', "COLOUR.json", "The colour file to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(colour_command, output)},
     {"chart", .argument = "CHART",
-     .help =
-         "Which chart it is: ColorChecker Classic or Passport made since November 2014 (classic, default) or before "
-         "(classic-2005), or ColorChecker Digital SG (sg)",
+     .help = "classic (default): ColorChecker Classic or Passport made since November 2014; classic-2005: made before; "
+             "sg: ColorChecker Digital SG",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(colour_command, chart), .words = weft_chart_word},
     {"model", .argument = "WHICH",
-     .help = "A matrix (linear), a root polynomial (root), or of both the one that better predicts a patch that it was "
-             "not fitted to (chosen, default)",
+     .help =
+         "linear: a matrix; root: a root polynomial; chosen (default): the one that better predicts a patch that it "
+         "was not fitted to",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(colour_command, model), .words = model_words},
     {"linear", .help = "8- and 16-bit files hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(colour_command, linear)},
@@ -149,14 +149,14 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_colour = {
     .name = "colour",
-    .summary = "find out the colours of a camera from a photograph of a colour chart",
+    .summary = "calibrate the colours of a camera from a photograph of a colour chart",
     .usage = "CHART.jpg|SESSION -o COLOUR.json",
-    .documentation = "Example: weft colour chart.nef -o colour.json\n\n"
-                     "Finds a colour chart in a photograph, whichever way up, and the matrix that turns the camera's "
-                     "colours under this lamp into linear sRGB. White stays white: white balance and exposure are "
-                     "those of the white patches in each photograph of the sample, and are not in the matrix. Give "
-                     "the result to --colour of capture, register and photographs. Take the photograph as a raw file, "
-                     "with the lamp and the lens that the sample is photographed with.",
+    .documentation =
+        "Example: weft colour chart.nef -o colour.json\n\n"
+        "Finds a colour chart in a photograph, in any orientation, and the matrix from the camera's colours "
+        "under this lamp to linear sRGB. White stays white: white balance and exposure are those of the white "
+        "patches in each photograph of the sample, and are not in the matrix. Give the result to --colour of "
+        "capture, register and photographs. Use a raw file, with the lamp and the lens of the sample.",
     .options = option_table,
     .needs = "a photograph of a colour chart and -o COLOUR.json",
     .surplus = "one photograph at a time",

@@ -28,13 +28,13 @@ static const weft_option option_table[] = {
     {"fit", .help = "Fit that weave to the dataset first (see fit-weave); writes REPORT/fitted.wv",
      .kind = WEFT_OPTION_FLAG, .offset = offsetof(compare_command, options.fit)},
     {"tiles", .argument = "X,Y",
-     .help = "Tiles of a .wv across the material (default: as --fit finds, its file says, or the virtual rig lays it)",
+     .help = "Tiles of a .wv across the material (default: as --fit finds, its file says, or the virtual rig has it)",
      .kind = WEFT_OPTION_PAIR, .offset = offsetof(compare_command, options.tiles_u), .high = 1e6},
-    {"bard", .argument = "NAME.bard.h5", .help = "Compare what `weft bard` predicted, too", .kind = WEFT_OPTION_INPUT,
-     .offset = offsetof(compare_command, options.bard)},
+    {"bard", .argument = "NAME.bard.h5", .help = "Compare this prediction of `weft bard`, too",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(compare_command, options.bard)},
     {"truth", .argument = "FILE.stitch", .help = "Trace the geometry that the dataset was simulated from, too",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(compare_command, options.truth)},
-    {"paths", .argument = "N", .help = "With --truth: paths of light for each pixel (default: 64)",
+    {"paths", .argument = "N", .help = "With --truth: light paths for each pixel (default: 64)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compare_command, options.truth_paths), .low = 4, .high = MAX_PATHS},
     {"size", .argument = "N", .help = "Pixels along each side of the pictures of scenes (default: 400)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compare_command, options.picture_side), .low = SMALLEST_PICTURE,
@@ -46,7 +46,7 @@ static weft_code check(void *values, weft_error *error)
 {
     const weft_compare_options *o = &((compare_command *)values)->options;
     if (o->fit && !o->weave)
-        return weft_fail(error, WEFT_BAD_USAGE, "--fit needs --weave, where the fit starts");
+        return weft_fail(error, WEFT_BAD_USAGE, "--fit needs --weave, the start of the fit");
     if (o->tiles_u > 0 && !o->weave)
         return weft_fail(error, WEFT_BAD_USAGE, "--tiles needs --weave CLOTH.wv");
     if (o->truth_paths > 0 && !o->truth)
@@ -233,10 +233,10 @@ const weft_command weft_command_compare = {
     .usage = "NAME.btf.h5 NAME.weft -o REPORT/",
     .documentation =
         "Example: weft compare silk.btf.h5 silk.weft --weave silk.wv --fit -o report/\n\n"
-        "Writes one HTML page: dataset, material, analytic cloth and BARD side by side, the errors of each against the "
-        "dataset, sample by sample and of the mean BRDF, slices of the mean BRDF, sizes and times. "
-        "A dataset of fewer than 30 images is also fitted with each image left out, to see how well the others predict "
-        "it.",
+        "Writes one HTML page: dataset, material, analytic cloth and BARD side by side, their errors against "
+        "the dataset, of every sample and of the mean BRDF, slices of the mean BRDF, sizes and times. A "
+        "dataset of fewer than 30 images is also fitted with each image left out, and the fit predicts that "
+        "image.",
     .options = option_table,
     .needs = "a dataset, a material and -o REPORT/",
     .surplus = "a dataset and a material",

@@ -39,20 +39,19 @@ static weft_code add_parameter(const weft_option *option, const char *text, void
 static const weft_option option_table[] = {
     {.argument = "MODEL", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(eval_command, input)},
     {"at", 'a', "DIRECTIONS.csv",
-     "Where to evaluate: columns lx,ly,lz,vx,vy,vz and maybe u,v (else the mean of the material), level",
+     "Table with the columns lx,ly,lz,vx,vy,vz and optionally u,v (else the mean of the material) and level",
      .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(eval_command, directions)},
     {"output", 'o', "FILE.csv", "Write here instead of to standard output", .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(eval_command, output)},
     {"noise", .argument = "SEED|off", .help = "Evaluate a weave with its noise (default: off)",
      .kind = WEFT_OPTION_NOISE, .offset = offsetof(eval_command, noise_seed)},
-    {"lobes", .help = "Evaluate the lobes of a .weft that has components, too", .kind = WEFT_OPTION_FLAG,
+    {"lobes", .help = "Evaluate the lobes of a .weft that also has components", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(eval_command, options.lobes)},
     {"interval",
-     .help = "Of a .weft with a certificate: add the ends of its interval of 95 %, r_low, r_high, ...; "
-             "needs u and v",
+     .help = "Add the ends of the 95 % interval of a .weft with a certificate, r_low, r_high, ...; needs u and v",
      .kind = WEFT_OPTION_FLAG, .offset = offsetof(eval_command, options.interval)},
-    {"as-printed", .help = "Weigh the threads of a .mc as its article prints it, not by area", .kind = WEFT_OPTION_FLAG,
-     .offset = offsetof(eval_command, options.as_printed)},
+    {"as-printed", .help = "Weight the threads of a .mc as the article prints it, not by area",
+     .kind = WEFT_OPTION_FLAG, .offset = offsetof(eval_command, options.as_printed)},
     {"set", 's', "NAME=R[,G,B]", "Value of a $NAME in a weave or .mc; may be repeated", .read = add_parameter},
     {0},
 };
@@ -113,10 +112,10 @@ const weft_command weft_command_eval = {
     .name = "eval",
     .summary = "evaluate any model at listed directions",
     .usage = "MODEL --at DIRECTIONS.csv",
-    .documentation = "Example: weft eval silk.weft --at directions.csv > values.csv\n\n"
-                     "Evaluates a material (.weft), a dataset (.btf.h5), a weave (.wv) or a cloth of "
-                     "microcylinders (.mc) and prints the rows of the table with "
-                     "the BRDF appended: r,g,b in 1/sr, without the cosine.",
+    .documentation =
+        "Example: weft eval silk.weft --at directions.csv > values.csv\n\n"
+        "Evaluates a material (.weft), a dataset (.btf.h5), a weave (.wv) or microcylinder cloth (.mc) and "
+        "prints the rows of the table with the BRDF appended: r,g,b in 1/sr, without the cosine.",
     .options = option_table,
     .needs = "a model and --at DIRECTIONS.csv",
     .surplus = "one model at a time",

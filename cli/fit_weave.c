@@ -17,7 +17,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(fit_weave_command, input)},
     {"output", 'o', "FITTED.wv", "The weave to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(fit_weave_command, output)},
-    {"weave", .argument = "START.wv", .help = "Pattern, kinds and sizes of the yarns, and where the search begins",
+    {"weave", .argument = "START.wv", .help = "Pattern, kinds and sizes of the yarns, and the start of the search",
      .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(fit_weave_command, weave)},
     {0},
 };
@@ -59,7 +59,7 @@ static void say_group(const fit_weave_command *command, const weft_fit_weave_gro
     if (group->width_fitted)
         print_value(width, sizeof width, group->width, group->width_deviation);
     else
-        snprintf(width, sizeof width, "%.4g (as given: the data tell it no better)", group->width);
+        snprintf(width, sizeof width, "%.4g (as given: the data do not determine it)", group->width);
     weft_command_say(&command->common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, width %s, ks %.4g %.4g %.4g",
                      group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, width, (double)ks.r,
                      (double)ks.g, (double)ks.b);
@@ -98,11 +98,11 @@ static void say_askew(const fit_weave_command *command, const weft_fit_weave_rep
     const double *askew = report->askew_deg, *deviation = report->askew_deviation;
     char deviations[96] = "null", event[256];
     if (report->turn == WEFT_TURN_VAGUE)
-        weft_command_say(common, "sample: taken as lying straight, the data do not tell");
+        weft_command_say(common, "sample: taken as lying straight, the data do not determine its turn");
     if (report->turn == WEFT_TURN_AT_BOUND)
         weft_command_say(common,
                          "sample: taken as lying straight, its turn runs to the bound of a degree: something else "
-                         "is amiss");
+                         "is wrong");
     if (report->turn == WEFT_TURN_FITTED) {
         weft_command_say(
             common,
@@ -165,11 +165,10 @@ const weft_command weft_command_fit_weave = {
     .name = "fit-weave",
     .summary = "fit a weave to a dataset",
     .usage = "NAME.btf.h5 --weave START.wv -o FITTED.wv",
-    .documentation = "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
-                     "Finds twist, inclination, curvature and width of the yarns, scattering of the "
-                     "fibres and colours so that the weave reflects like the mean tile in "
-                     "the dataset. "
-                     "Pattern and lengths stay as they are in START.wv.",
+    .documentation =
+        "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
+        "Finds twist, inclination, curvature and width of the yarns, scattering of the fibres and colours, so "
+        "that the weave reflects like the mean tile of the dataset. Pattern and lengths stay as in START.wv.",
     .options = option_table,
     .needs = "NAME.btf.h5, --weave START.wv and -o FITTED.wv",
     .surplus = "one dataset at a time",

@@ -23,27 +23,27 @@ static const weft_option option_table[] = {
      .offset = offsetof(import_command, output)},
     {"size", 's', "N", "Reduce the photographs to N texels across by averaging areas", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(import_command, options.width), .low = 1, .high = 65536},
-    {"pitch", .argument = "MM", .help = "Size of a texel of the dataset (default: what the collection says, else 1)",
+    {"pitch", .argument = "MM", .help = "Size of a texel of the dataset (default: as the collection says, else 1)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.texel_pitch_mm), .low = 1e-6, .high = 1e6},
     {"saturated", .argument = "LEVEL",
-     .help = "Mask samples of 8-bit photographs from this level of 255; 256 masks none (default: 250)",
+     .help = "Mask samples of 8-bit photographs from this level of 255 on; 256 masks none (default: 250)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.saturated_at), .low = 1, .high = 256,
      .divisor = 255},
     {"values", .argument = "WHAT",
-     .help = "What a sample holds: reflectance_cosine or reflectance (default: what the file says, else the first)",
+     .help = "Quantity of the samples: reflectance_cosine or reflectance (default: as the file says, else the first)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.values), .words = value_words},
     {"lights", .argument = "FILE.lp", .help = "Direction of the lamp of every photograph; all have one view",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(import_command, options.lights)},
     {"colours", .argument = "SPACE",
-     .help = "What the photographs hold: srgb, gamma-2.2, adobe-rgb, display-p3 or xyz (default: file, as each file "
-             "says, else srgb)",
+     .help = "Colours of the photographs: srgb, gamma-2.2, adobe-rgb, display-p3, xyz, or file (default): as each file "
+             "says, else srgb",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.colours), .words = colour_words},
     {"white", .argument = "LEVEL", .help = "Linear value of a perfect white diffuser in the photographs (default: 1)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.white), .low = 1e-6, .high = 65504},
     {"linear", .help = "8- and 16-bit photographs hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.linear)},
     WEFT_HEIGHTS_OPTION(import_command, heights),
-    {"skip-bad", .help = "Mask photographs that cannot be used, and leave out doubled ones, instead of stopping",
+    {"skip-bad", .help = "Mask photographs that cannot be used, and leave out duplicates, instead of stopping",
      .kind = WEFT_OPTION_FLAG, .offset = offsetof(import_command, options.skip_bad)},
     {0},
 };
@@ -81,16 +81,15 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_import = {
     .name = "import",
-    .summary = "turn foreign photographs into a dataset",
+    .summary = "turn photographs of others into a dataset",
     .usage = "SOURCE -o NAME.btf.h5",
-    .documentation = "Example: weft import photographs/ -o cloth.btf.h5 --size 256\n\n"
-                     "Turns a folder of photographs that others made, or a .btf file of the University of Bonn "
-                     "(UBO2014), into a dataset. The folder holds "
-                     "camera_pos.txt, light_pos.txt, image_size.txt and "
-                     "light_power.txt beside NN.png (near light and camera), or a directions.csv, or "
-                     "an .lp file (one view, many lamps), or "
-                     "files named by their angles, such as "
-                     "tv045_pv090/tl030_pl120_tv045_pv090.png (light and camera far away).",
+    .documentation =
+        "Example: weft import photographs/ -o cloth.btf.h5 --size 256\n\n"
+        "Turns a folder of photographs that others took, or a .btf file of the University of Bonn (UBO2014), "
+        "into a dataset. The folder holds one of these: camera_pos.txt, light_pos.txt, image_size.txt and "
+        "light_power.txt beside NN.png (near light and camera); a directions.csv; an .lp file (one view, many "
+        "lamps); files named by their angles, such as tv045_pv090/tl030_pl120_tv045_pv090.png (far light and "
+        "camera).",
     .options = option_table,
     .needs = "a folder of photographs or a .btf file, and -o NAME.btf.h5",
     .surplus = "one folder or file at a time",

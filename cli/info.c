@@ -27,11 +27,11 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_info = {
     .name = "info",
-    .summary = "say what a file holds",
+    .summary = "print what a file holds",
     .usage = "FILE",
     .documentation = "Example: weft info silk.weft\n\n"
-                     "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
-                     "microcylinders (.mc), a stitch (.stitch) or a session folder holds.",
+                     "Prints what a material (.weft), a dataset (.btf.h5), a weave (.wv), microcylinder cloth (.mc), a "
+                     "stitch (.stitch) or a session folder holds.",
     .options = option_table,
     .needs = "a file",
     .surplus = "one file at a time",

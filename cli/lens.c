@@ -38,14 +38,14 @@ static weft_code read_board(const weft_option *option, const char *text, void *t
 static const weft_option option_table[] = {
     {.argument = "FOLDER|FILE...", .kind = WEFT_OPTION_OTHER, .read = read_input, .repeats = true},
     {"board", .argument = "BOARD",
-     .help = "What was photographed, sizes in mm: plate:OPENING (the target), chessboard:COLUMNSxROWS:SQUARE (inner "
+     .help = "The board, sizes in mm: plate:OPENING (the target), chessboard:COLUMNSxROWS:SQUARE (inner "
              "corners), charuco:COLUMNSxROWS:SQUARE,MARKER[:DICTIONARY] (squares), "
              "aruco:COLUMNSxROWS:MARKER,GAP[:DICTIONARY], apriltag:COLUMNSxROWS:TAG,GAP[:DICTIONARY]",
      .kind = WEFT_OPTION_OTHER, .read = read_board},
     {"output", 'o', "LENS.json", "The lens to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(lens_command, output)},
     {"model", .argument = "WHICH",
-     .help = "Which of k2, p1, p2, k3 are told: those that the photographs carry (chosen, default) or all (full)",
+     .help = "chosen (default): fit those of k2, p1, p2, k3 that the photographs determine; full: fit all",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(lens_command, model), .words = model_words},
     {0},
 };
@@ -117,7 +117,7 @@ static void say_left_out(const weft_common_options *common, const weft_lens_repo
         if (report->photograph[i].left_out)
             weft_command_say(common, "left out %s: %s", report->photograph[i].name, report->photograph[i].left_out);
     if (report->stray_count > 0)
-        weft_command_say(common, "left out %d corners far from where the lens puts them", report->stray_count);
+        weft_command_say(common, "left out %d corners far from their predicted places", report->stray_count);
 }
 
 static void say_lens(const lens_command *command, const weft_lens_report *report)
@@ -195,13 +195,14 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_lens = {
     .name = "lens",
-    .summary = "find out the lens of a camera from photographs of a board",
+    .summary = "calibrate the lens of a camera from photographs of a board",
     .usage = "FOLDER|FILE... --board BOARD -o LENS.json",
-    .documentation = "Example: weft lens photographs/ --board charuco:7x9:28,21:5X5_100 -o lens.json\n\n"
-                     "Calibrates a camera from photographs of a board with known corners, all taken with one lens at "
-                     "one focus and zoom. 'weft target --board' prints such a board. Photographs that do not help are "
-                     "named and left out. Pixels are taken as they are stored: a note in a file that it is to be shown "
-                     "turned (EXIF orientation) is not followed, because the lens does not turn with it.",
+    .documentation =
+        "Example: weft lens photographs/ --board charuco:7x9:28,21:5X5_100 -o lens.json\n\n"
+        "Calibrates a camera from photographs of a board with known corners, all taken with one lens at one "
+        "focus and zoom. 'weft target --board' prints such a board. Photographs that do not help are listed "
+        "and left out. Pixels are taken as they are stored: the EXIF orientation is ignored, because the lens "
+        "does not turn with the picture.",
     .options = option_table,
     .needs = "photographs, --board BOARD and -o LENS.json",
     .surplus = "any number of photographs",

@@ -19,17 +19,15 @@ static const weft_option option_table[] = {
     {"output", 'o', "SMALL.weft", "The material to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(prune_command, output)},
     {"path", .argument = "PATH.csv",
-     .help = "Camera and light move through the key frames of this table, as for weft render; without it the scene "
-             "stands still",
+     .help = "Move camera and light through the key frames of this table, as for weft render; default: a still scene",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(prune_command, path_file)},
     {"error", .argument = "N",
-     .help =
-         "Let pictures of the cloth differ by N/255, RMSE of what the screen shows (default: 0.5); 0: leave out only "
-         "what no pixel can reach",
+     .help = "Let pictures of the cloth differ by N/255, RMSE of the screen values (default: 0.5); 0: remove only data "
+             "that no pixel can reach",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(prune_command, allowed.rmse), .low = 0, .high = 255},
-    {"flip", .argument = "X", .help = "And by X in the mean of FLIP (default: 0.05)", .kind = WEFT_OPTION_NUMBER,
-     .offset = offsetof(prune_command, allowed.flip), .low = 0, .high = 1},
-    {"seed", .argument = "N", .help = "Start of the random moments that are measured (default: 1)",
+    {"flip", .argument = "X", .help = "Let them differ by X in the mean of FLIP (default: 0.05)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(prune_command, allowed.flip), .low = 0, .high = 1},
+    {"seed", .argument = "N", .help = "Seed of the random moments that are measured (default: 1)",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(prune_command, seed)},
     {0},
 };
@@ -67,12 +65,12 @@ static void say_errors(const weft_common_options *common, const weft_prune_repor
 {
     weft_command_say(common, "predicted RMSE %.3f/255, FLIP %.4f (%d moments that it was chosen by)", r->predicted.rmse,
                      r->predicted.flip, r->decided_count);
-    char of[64] = "the same moment, for nothing moves";
+    char of[64] = "the same moment, because nothing moves";
     if (r->decided_count > 1)
         snprintf(of, sizeof of, "%d other moments, whole pictures", r->measured_count);
     weft_command_say(common, "measured  RMSE %.3f/255, FLIP %.4f (%s)", r->measured.rmse, r->measured.flip, of);
     if (!weft_prune_holds(r))
-        weft_command_say(common, "that is more than was allowed: keep the whole material for this scene");
+        weft_command_say(common, "that is more than allowed: keep the whole material for this scene");
 }
 
 static weft_code say(const prune_command *command, const weft_prune_report *report, weft_error *error)
@@ -160,13 +158,13 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_prune = {
     .name = "prune",
-    .summary = "keep only what a scene requires of a material",
+    .summary = "remove data of a material that one scene never shows",
     .usage = "NAME.weft -o SMALL.weft",
     .documentation =
         "Example: weft prune silk.weft --settings shot.png --path turn.csv -o silk-shot.weft\n\n"
-        "Finds with bounds which mip levels, texels, views, lights and lobes of a material the pictures of a scene "
-        "can ever reach, and writes a material without the others. Mesh, camera, lights and size of the "
-        "picture are given as for weft render.",
+        "Removes the mip levels, texels, views, lights and lobes of a material that the pictures of one scene "
+        "can never reach, and data that changes them by less than the allowed error. Mesh, camera, lights and "
+        "size of the picture are given as for weft render.",
     .options = option_table,
     .shows_scene = true,
     .needs = "-o SMALL.weft",

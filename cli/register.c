@@ -29,13 +29,13 @@ static const weft_option option_table[] = {
     {"size", 's', "WxH", "Texels of the opening (default: 64x64)", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(register_command, width), .high = LARGEST_SIZE},
     {"colour", .argument = "COLOUR.json|FOLDER",
-     .help = "The colours of the camera under the lamp, from weft colour; of several cameras, a folder with a file for "
-             "each, CAMERA.json (default: those that the session holds, if any)",
+     .help = "Colours of the camera under the lamp, from weft colour; for several cameras, a folder with a file for "
+             "each, CAMERA.json (default: those in the session, if any)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(register_command, colour)},
     WEFT_HEIGHTS_OPTION(register_command, heights),
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(register_command, report_folder)},
-    {"allow-unfinished", .help = "Register what there is of a session that is not finished", .kind = WEFT_OPTION_FLAG,
+    {"allow-unfinished", .help = "Register a session that is not finished", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(register_command, allow_unfinished)},
     {0},
 };
@@ -55,10 +55,9 @@ static void say_faults(const register_command *command, const weft_session *sess
             weft_command_say(&command->common, "masked: %s", r->fault[shot].reason);
     }
     if (r->estimated_whites)
-        weft_command_say(
-            &command->common,
-            "%d photographs show no usable white reference; they use the light's power measured in the others",
-            r->estimated_whites);
+        weft_command_say(&command->common,
+                         "%d photographs show no usable white patches; they use the power of the lamp in the others",
+                         r->estimated_whites);
 }
 
 static weft_code say_outcome(const register_command *command, const weft_session *session, const weft_registration *r,
@@ -213,11 +212,11 @@ const weft_command weft_command_register = {
     .name = "register",
     .summary = "turn the photographs of a session into a dataset",
     .usage = "SESSION -o NAME.btf.h5",
-    .documentation = "Example: weft register session/ -o cloth.btf.h5 --size 64x64 --report report/\n\n"
-                     "Turns the photographs of a session into a dataset: finds where the camera stood "
-                     "for every view, rectifies the photographs and calibrates them against the white "
-                     "reference. What cannot be used is named and masked; so is, without a word, what a view does "
-                     "not see of texels beside the frame.",
+    .documentation =
+        "Example: weft register session/ -o cloth.btf.h5 --size 64x64 --report report/\n\n"
+        "Finds where the camera stood for every view, rectifies the photographs, calibrates them by the white "
+        "patches, and writes a dataset. Unusable photographs are listed and masked. Texels beside the frame "
+        "that a view does not see are masked, too.",
     .options = option_table,
     .needs = "a session and -o NAME.btf.h5",
     .surplus = "one session at a time",

@@ -46,14 +46,13 @@ static const weft_option option_table[] = {
     {"normal", .argument = "FILE.png", .help = "Write its normals as a picture", .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(relief_command, normal)},
     {"range", .argument = "LOW,HIGH",
-     .help = "Look for heights between these, in mm above the plane of the texels (default: found)",
-     .read = read_range},
+     .help = "Search between these heights, in mm above the plane of the texels (default: found)", .read = read_range},
     {"repeat", .argument = "WHICH",
-     .help = "Whether the material continues at its opposite border: on, off, or auto (default), by how well they fit",
+     .help = "Whether the material continues at its opposite border: on, off, or auto (default): if the borders fit",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(relief_command, options.repeat), .words = repeat_words},
     {"move", .argument = "on|off",
-     .help = "Move the texels of OTHER.btf.h5 onto the plane that is found, for models that see no heights, such as "
-             "lobes (default: off)",
+     .help = "Move the texels of OTHER.btf.h5 onto the plane that is found, for models without heights, such as lobes "
+             "(default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(relief_command, move)},
     {0},
 };
@@ -176,9 +175,9 @@ const weft_command weft_command_relief = {
     .summary = "find the heights of a dataset in the parallax of its photographs",
     .usage = "NAME.btf.h5",
     .documentation = "Example: weft relief knit.btf.h5 --report knit-relief\n\n"
-                     "Looks for the height at which the views of a place agree. Heights are kept in the dataset where "
-                     "views that are left out are predicted better through them than through the best plane; else the "
-                     "plane, where that is better than none; else nothing.",
+                     "Finds the height at which the views of a place agree. The dataset keeps heights if they predict "
+                     "left-out views better than the best plane does; else the plane, if it is better than none; else "
+                     "nothing.",
     .options = option_table,
     .needs = "NAME.btf.h5",
     .surplus = "one dataset at a time",

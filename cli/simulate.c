@@ -42,19 +42,20 @@ static const weft_option option_table[] = {
      .help = "Directions of views and lights: 64 (default) spread evenly within 80 degrees of the normal, ubo81, or a "
              "CSV with the columns theta_deg and phi_deg",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(simulate_command, directions)},
-    {"bounces", .argument = "N", .help = "Follow light over so many bounces between yarns (default: 3)",
+    {"bounces", .argument = "N", .help = "Number of bounces of light between yarns (default: 3)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(simulate_command, options.bounces), .low = 0, .high = MAX_BOUNCES},
     {"noise", .argument = "PERCENT",
-     .help = "Stop when the standard error of each view is this part of its samples, RMS (default: 1)",
+     .help = "Stop when the standard error of each view is this percentage of its samples, RMS (default: 1)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(simulate_command, options.noise), .low = 0.01, .high = 1000,
      .divisor = 100},
-    {"seed", .argument = "N", .help = "Start of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
+    {"seed", .argument = "N", .help = "Seed of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
      .offset = offsetof(simulate_command, options.seed)},
-    {"resolution", .argument = "N", .help = "Cells of the mesh across the tile (default: what the stitch says)",
+    {"resolution", .argument = "N", .help = "Cells of the mesh across the tile (default: as the stitch says)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(simulate_command, resolution), .low = 4, .high = 1024},
     {"plane", .argument = "WHICH",
-     .help = "Where texels lie: where the views agree best, found by a rough simulation (auto, default), on the top "
-             "face of the cloth (top), or at the mean height of what is seen from above (mean)",
+     .help =
+         "Plane of the texels: where the views of a rough simulation agree best (auto, default), the top face of the "
+         "cloth (top), or the mean height seen from above (mean)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(simulate_command, plane), .words = plane_words},
     WEFT_HEIGHTS_OPTION(simulate_command, heights),
     {"obj", .argument = "FILE.obj", .help = "Write the surface of the yarns too; without -o, only that",
@@ -249,9 +250,9 @@ const weft_command weft_command_simulate = {
     .usage = "STITCH -o NAME.btf.h5",
     .documentation =
         "Example: weft simulate plain_knit.stitch -o knit.btf.h5\n\n"
-        "Makes a dataset of cloth from its geometry: yarns in space, what they hide, shade and send to each "
-        "other, and the holes between them. Every direction is a view and a light. A sample is reflectance "
-        "times cosine of the whole texel; the opacity says which part of it is cloth.",
+        "Computes a dataset of cloth from yarns in space, which hide and shade each other and pass light on, "
+        "with holes between them. Every direction is a view and a light. A sample is reflectance times cosine "
+        "of the whole texel; the opacity is the share of the texel that is cloth.",
     .options = option_table,
     .needs = "a stitch, and -o NAME.btf.h5 or --obj FILE.obj",
     .surplus = "one stitch at a time",

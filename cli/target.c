@@ -82,10 +82,11 @@ const weft_command weft_command_target = {
     .name = "target",
     .summary = "print the target, or a board for a lens, at true size",
     .usage = "-o NAME.pdf|NAME.svg",
-    .documentation = "Example: weft target -o target.pdf --paper A4\n\n"
-                     "Draws the sheet that is photographed with the sample: markers round a square opening, places "
-                     "for two mirror balls and a pin, and bars to be measured after printing. With --board, draws a "
-                     "board that tells 'weft lens' the lens of a camera.",
+    .documentation =
+        "Example: weft target -o target.pdf --paper A4\n\n"
+        "Draws the sheet that is photographed with the sample: markers round a square opening, places for two "
+        "mirror balls and a pin, and bars to measure after printing. With --board, draws a board for 'weft "
+        "lens'.",
     .options = option_table,
     .needs = "-o NAME.pdf or NAME.svg",
     .surplus = "nothing is read",

@@ -20,12 +20,10 @@ static const weft_option option_table[] = {
     {"output", 'o', "TILE.btf.h5|TILE.weft", "The dataset or material to write", .is_required = true,
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(tile_command, output)},
     {"weave", .argument = "CLOTH.wv",
-     .help = "The weave of the cloth: the tile is then as large as that of the weave, not the shortest repeat, and "
-             "begins where that begins",
+     .help = "The weave of the cloth, which gives size and corner of the tile (default: the shortest repeat)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(tile_command, weave)},
     {"blend",
-     .help = "Of a material: overlap its ends and cut them where they differ least, so that it tiles. It need "
-             "not repeat",
+     .help = "Make a material tile that does not repeat: overlap its ends and cut them where they differ least",
      .kind = WEFT_OPTION_FLAG, .offset = offsetof(tile_command, blend)},
     {0},
 };
@@ -135,15 +133,14 @@ static weft_code run_on(const tile_command *command, weft_error *error)
         return weft_fail(error, WEFT_BAD_USAGE, "--weave finds tiles of a cloth that repeats; --blend needs none");
     if (command->blend && kind != WEFT_FILE_MATERIAL)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' is no material (.weft): --blend cuts what weft compress has made of photographs",
-                         command->input);
+                         "'%s' is no material (.weft): compress the dataset first, then use --blend", command->input);
     if (!command->blend && kind == WEFT_FILE_MATERIAL)
         return weft_fail(error, WEFT_BAD_INPUT,
                          "'%s' is a material, not a dataset (.btf.h5): to make a material tile, use --blend",
                          command->input);
     const char *dot = strrchr(command->output, '.');
     if (dot && strcmp(dot, command->blend ? ".h5" : ".weft") == 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is the name of a %s: of a %s a %s is made", command->output,
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is the name of a %s, but from a %s a %s is made", command->output,
                          command->blend ? "dataset" : "material", command->blend ? "material" : "dataset",
                          command->blend ? "material" : "dataset");
     return command->blend ? blend(command, error) : average(command, error);
@@ -164,11 +161,11 @@ const weft_command weft_command_tile = {
     .usage = "NAME.btf.h5 -o TILE.btf.h5\nNAME.weft --blend -o TILE.weft",
     .documentation =
         "Example: weft tile denim.btf.h5 --weave denim.wv -o denim-tile.btf.h5\n\n"
-        "Of a dataset: finds the tile that repeats over a material, to a fraction of a texel, and writes "
-        "a dataset of one tile: the mean of all tiles, image by image. What differs from "
-        "tile to tile, the irregularity of the yarns and noise, goes away.\n\n"
-        "Of a material, with --blend: a tile without a visible seam, whatever it shows. Its ends are laid "
-        "over each other and cut where they differ least, and what they still differ by is spread over the tile.",
+        "For a dataset: finds the tile that repeats over it, to a fraction of a texel, and writes a dataset "
+        "of one tile: the mean of all tiles, image by image. Irregularity of the yarns and noise are averaged "
+        "out.\n\n"
+        "For a material, with --blend: makes it tile without a visible seam, whatever it shows. Its ends are "
+        "overlapped and cut where they differ least, and the remaining difference is spread over the tile.",
     .options = option_table,
     .needs = "NAME.btf.h5 and -o TILE.btf.h5, or NAME.weft, --blend and -o TILE.weft",
     .surplus = "one dataset or material at a time",

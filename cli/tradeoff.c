@@ -14,7 +14,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(tradeoff_command, input)},
     {"output", 'o', "REPORT/", "The folder for the page and its pictures", .is_required = true,
      .kind = WEFT_OPTION_FOLDER, .offset = offsetof(tradeoff_command, folder)},
-    {"weave", 0, "CLOTH.wv|CLOTH.mc", "Price a weave, fitted to the dataset, or microcylinder cloth (.mc) as it is",
+    {"weave", 0, "CLOTH.wv|CLOTH.mc", "Add a weave, fitted to the dataset, or microcylinder cloth (.mc) as it is",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(tradeoff_command, weave)},
     {0},
 };
@@ -79,15 +79,14 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_tradeoff = {
     .name = "tradeoff",
-    .summary = "price every model of a dataset in bytes, time and error",
+    .summary = "list bytes, time and error of every model of a dataset",
     .usage = "NAME.btf.h5 -o REPORT/",
     .documentation =
         "Example: weft tradeoff silk.btf.h5 -o silk-prices\n\n"
-        "Fits every model that the dataset can carry: lobes with and without tables, components, smaller tables, fewer "
-        "photographs and texels, BARD from one light, and a weave with --weave. Writes one HTML page: bytes, time of "
-        "the fit and of a frame, and the error on "
-        "photographs that were held out of the fit, beside that on those that were not; plots of one against the "
-        "other; which models are worth their price; and the same as comma-separated values. Takes minutes.",
+        "Fits every model that the dataset supports: lobes, components, fewer photographs and texels, BARD "
+        "from one light, and a weave with --weave. Writes one HTML page with bytes, time of the fit and of a "
+        "frame, and the error on held-out and on fitted photographs; plots; the models that no other one "
+        "beats; and the same as comma-separated values. Takes minutes.",
     .options = option_table,
     .needs = "a dataset and -o REPORT/",
     .surplus = "one dataset at a time",

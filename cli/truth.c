@@ -34,26 +34,25 @@ static const weft_option option_table[] = {
     {.argument = "CLOTH.wv|.stitch...", .kind = WEFT_OPTION_OTHER, .read = read_cloth, .repeats = true},
     {"output", 'o', "REPORT/", "The folder for the page and its tables", .is_required = true,
      .kind = WEFT_OPTION_FOLDER, .offset = offsetof(truth_command, request.folder)},
-    {"rig", .argument = "FILE.json", .help = "Settings of the virtual rig (default: as it stands)",
+    {"rig", .argument = "FILE.json", .help = "Settings of the virtual rig (default: its own)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(truth_command, rig_file)},
     {"plan", .argument = "ubo81|FILE.csv",
-     .help = "Which photographs: all pairs of 81 directions (default), or a table as weft capture takes it",
+     .help = "The photographs: all pairs of 81 directions (default), or a table as weft capture takes it",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(truth_command, request.chain.plan)},
     {"tiles", .argument = "N",
-     .help = "Tiles of a stitch across the opening, which is scaled for it with the lens (default: 2; 0: as the rig "
-             "is)",
+     .help = "Tiles of a stitch across the opening; opening and lens are scaled for it (default: 2; 0: not scaled)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(truth_command, request.tiles), .low = 0, .high = 1000},
     {"texels", .argument = "N", .help = "Texels along a side of the opening (default: 32)", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(truth_command, request.chain.size), .low = 1, .high = 1024},
     {"components", .argument = "N",
      .help = "Components of the material, at most 32 (default: as weft compress chooses)", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(truth_command, component_count), .low = 4, .high = MOST_COMPONENTS},
-    {"queries", .argument = "N", .help = "Places, lights and views that are asked for (default: 2000)",
+    {"queries", .argument = "N", .help = "Number of random places, lights and views (default: 2000)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.count), .low = LEAST_QUERIES,
      .high = MOST_QUERIES},
-    {"paths", .argument = "N", .help = "Paths of light for each value of the cloth (default: 64)",
+    {"paths", .argument = "N", .help = "Light paths for each value of the cloth (default: 64)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.paths), .low = 1, .high = MOST_PATHS},
-    {"seed", .argument = "N", .help = "Start of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
+    {"seed", .argument = "N", .help = "Seed of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
      .offset = offsetof(truth_command, request.queries.seed)},
     {0},
 };
@@ -129,15 +128,15 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_truth = {
     .name = "truth",
-    .summary = "tell where the error of a material comes from, on cloth whose reflectance is known",
+    .summary = "split the error of a material by source, on cloth whose reflectance is known",
     .usage = "CLOTH... -o REPORT/",
     .documentation =
         "Example: weft truth silk.wv plain_knit.stitch -o report/\n\n"
-        "Photographs each cloth with the virtual rig, registers and compresses it, and asks the material, and each "
-        "stage before it, for places, lights and views drawn at random, where the cloth itself is known. Writes one "
-        "HTML page: a stack for each cloth that says how much of the squared error comes from the choice of "
-        "directions, from photographs and registration, from the model and from storage; and the same as "
-        "comma-separated values. The photographs go when they are registered.",
+        "Photographs each cloth with the virtual rig, registers and compresses it, and evaluates the material "
+        "and each earlier stage at random places, lights and views, where the cloth itself is known. Writes "
+        "one HTML page that splits the squared error of each cloth into the choice of directions, photographs "
+        "and registration, the model, and storage; and the same as comma-separated values. The photographs "
+        "are deleted when they are registered.",
     .options = option_table,
     .needs = "one cloth or more, and -o REPORT/",
     .surplus = "cloths",

@@ -59,13 +59,13 @@ const weft_command weft_command_verify = {
     .name = "verify",
     .summary = "check a file from end to end",
     .usage = "FILE",
-    .documentation = "Example: weft verify silk.btf.h5\n\n"
-                     "Reads all of a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
-                     "microcylinders (.mc), a stitch "
-                     "(.stitch) or a session folder and checks it: sizes, checksums, every number, "
-                     "every photograph. Exit code 1 and one line where something is wrong. Of a session it finds all: "
-                     "each shot that is missing, damaged or doubled and each foreign file, a line each. `weft capture` "
-                     "takes those shots again.",
+    .documentation =
+        "Example: weft verify silk.btf.h5\n\n"
+        "Reads all of a material (.weft), a dataset (.btf.h5), a weave (.wv), microcylinder cloth (.mc), a "
+        "stitch (.stitch) or a session folder and checks it: sizes, checksums, every number, every "
+        "photograph. Exit code 1 and one line if something is wrong. For a session it lists all faults: each "
+        "shot that is missing, damaged or a duplicate, and each unexpected file. `weft capture` takes those "
+        "shots again.",
     .options = option_table,
     .needs = "a file",
     .surplus = "one file at a time",
