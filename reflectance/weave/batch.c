@@ -115,52 +115,49 @@ static void turn_directions(const weft_vec3 *from, int count, weft_vec3 *to)
         to[i] = weft_vec3_of(-from[i].y, from[i].x, from[i].z);
 }
 
-/* F aw of all yarns alike, 0 but for the first of them. */
-static weft_real share_of(const weft_weave *weave, int index)
+/* share [yarn_count]: F aw of all yarns that are alike, at the first of them; 0 at the others. */
+static void sum_shares(const weft_weave *weave, weft_real *share)
 {
-    weft_real share = 0;
-    if (weave->yarn[index].alike != index)
-        return 0;
-    for (int i = index; i < weave->yarn_count; i++) {
-        const weft_yarn *yarn = &weave->yarn[i];
-        share += yarn->alike == index ? yarn->cell_fraction * yarn->area_weight : 0;
-    }
-    return share;
+    for (int i = 0; i < weave->yarn_count; i++)
+        share[i] = 0;
+    for (int i = 0; i < weave->yarn_count; i++)
+        share[weave->yarn[i].alike] += weave->yarn[i].cell_fraction * weave->yarn[i].area_weight;
 }
 
-static void add_kinds(const weft_weave *weave, int count, const weft_vec3 *const direction[2][2], weft_real *kind,
-                      weft_real *value)
+static void add_yarns(const weft_weave *weave, int count, const weft_real *share,
+                      const weft_vec3 *const direction[2][2], weft_real *of_yarn, weft_real *value)
 {
     woven_kernels kernels = kernels_in_use();
     for (int i = 0; i < count; i++)
         value[i] = 0;
     for (int k = 0; k < weave->yarn_count; k++) {
-        weft_real share = share_of(weave, k);
         int turned = !weave->yarn[k].warp;
-        if (!(share > 0))
+        if (!(share[k] > 0))
             continue;
-        kernels.reflectance(&weave->yarn[k].prepared, count, direction[turned][0], direction[turned][1], kind);
+        kernels.reflectance(&weave->yarn[k].prepared, count, direction[turned][0], direction[turned][1], of_yarn);
         for (int i = 0; i < count; i++)
-            value[i] += share * kind[i];
+            value[i] += share[k] * of_yarn[i];
     }
 }
 
 weft_code weft_weave_mean_specular_batch(const weft_weave *weave, int count, const weft_vec3 *light,
                                          const weft_vec3 *view, weft_real *value, weft_error *error)
 {
-    size_t n = (size_t)count + 1;
+    size_t n = (size_t)count + 1, numbers = n + (size_t)weave->yarn_count;
     weft_vec3 *turned = malloc(2 * n * sizeof *turned);
-    weft_real *kind = malloc(n * sizeof *kind);
+    weft_real *of_yarn = malloc(numbers * sizeof *of_yarn);
     weft_code code = WEFT_OK;
-    if (turned && kind) {
+    if (turned && of_yarn) {
+        weft_real *share = of_yarn + n;
+        sum_shares(weave, share);
         turn_directions(light, count, turned);
         turn_directions(view, count, turned + n);
         const weft_vec3 *const direction[2][2] = {{light, view}, {turned, turned + n}};
-        add_kinds(weave, count, direction, kind, value);
+        add_yarns(weave, count, share, direction, of_yarn, value);
     } else {
-        code = weft_fail_memory(error, "directions", 2 * n * sizeof *turned + n * sizeof *kind);
+        code = weft_fail_memory(error, "directions", 2 * n * sizeof *turned + numbers * sizeof *of_yarn);
     }
     free(turned);
-    free(kind);
+    free(of_yarn);
     return code;
 }
