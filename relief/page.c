@@ -99,7 +99,7 @@ static weft_code write_chart(weft_page *page, const weft_relief_report *report, 
             of[i][0] = angle_of(&report->view[i]);
             of[i][1] = 100 * (s == 0 ? e->flat : s == 1 ? e->plane : e->heights);
         }
-        series[s] = (weft_chart_series){name[s], colour[s], false, count, (const double(*)[2])of};
+        series[s] = (weft_chart_series){name[s], colour[s], WEFT_CHART_POINTS, count, (const double(*)[2])of, NULL};
     }
     fputs(
         "<h2>Error by view</h2>\n<p class=\"note\">Each view predicted from its neighbours: as if all lay flat in the "

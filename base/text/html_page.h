@@ -9,8 +9,8 @@
  *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway;
  *                                  "text reason": a sentence, which is not squeezed
  *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
- *     <svg class="plot">           drawn in the colours of the page, as by base/text/chart.h, 560 units wide;
- *                                  "plot wide": 760; "plot disc": small, without a frame;
+ *     <svg class="plot">           drawn in the colours of the page, as by base/text/chart.h, 560 units wide, 760 with
+ *                                  a legend; "plot disc": small, without a frame;
  *                                  <div class="plots"> holds two or three
  *     <div class="pairs">          rows of two small pictures side by side
  *     class="colour0" to "colour6" what belongs together

@@ -136,7 +136,7 @@ static weft_code write_drift(weft_page *page, const weft_status_page *status, we
         point[i][0] = status->lamp[i].number;
         point[i][1] = median > 0 ? 100 * (status->lamp[i].level / median - 1) : NAN;
     }
-    weft_chart_series lamp = {NULL, 0, false, status->lamp_count, (const double(*)[2])point};
+    weft_chart_series lamp = {.point_count = status->lamp_count, .point = (const double(*)[2])point};
     weft_chart chart = {"The lamp, as the white patches show it",
                         {"photograph of this run", "", 0, 1, 1},
                         {"against its median", " %", -5, 5, 0},

@@ -3,7 +3,6 @@
 #include "base/integers.h"
 #include "compare/tradeoff/cloth.h"
 #include "compare/tradeoff/held_pictures.h"
-#include "compare/tradeoff/variant.h"
 #include "compress/bard/texels.h"
 #include "compress/compress.h"
 #include "compress/hold_out/certify.h"
@@ -24,7 +23,6 @@ static const double certified = 0.95;
 struct weft_held_bench {
     const weft_dataset *dataset;
     const char *scratch_path;
-    char *material_path;
     weft_excerpt excerpt;
     weft_texel_block asked; /* of the excerpt, in its middle: less than all where it has a surface */
     weft_excerpt alone;     /* these, to which lobes are fitted where it has a surface; else nothing */
@@ -39,7 +37,6 @@ struct weft_held_bench {
     weft_priced_model fitted_model;
     double fit_s;
     weft_material material[MOST_SPLITS];
-    double rounding_step[MOST_SPLITS]; /* of their components */
 };
 
 void weft_held_error_free(weft_held_error *measured)
@@ -53,10 +50,6 @@ void weft_held_error_free(weft_held_error *measured)
 static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
                          weft_held_bench *bench, weft_error *error)
 {
-    if (asprintf(&bench->material_path, "%s.weft", bench->scratch_path) < 0) {
-        bench->material_path = NULL;
-        return weft_fail_memory(error, "path", strlen(bench->scratch_path));
-    }
     /* The one after the last is that of the fitted images. */
     WEFT_TRY(weft_splits_create(weft_dataset_get_layout(dataset), asked.first, asked.count + 1, &bench->splits, error));
     bench->split_count = bench->splits.kind == WEFT_SPLIT_EACH ? MOST_SPLITS : asked.count;
@@ -106,7 +99,6 @@ void weft_held_bench_free(weft_held_bench *bench)
     free(bench->kinds);
     for (int s = 0; s < MOST_SPLITS; s++)
         free(bench->known[s]);
-    free(bench->material_path);
     free(bench);
 }
 
@@ -165,22 +157,14 @@ static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const we
     return is_fitted_alone(bench, model) ? &bench->alone : &bench->excerpt;
 }
 
-/* Fewer texels come from there. */
-static bool has_levels(const weft_held_bench *bench, const weft_priced_model *model)
-{
-    return bench->has_pictures && model->options.budget_bytes == 0 &&
-           (model->gives_fewer || !bench->for_pictures_alone);
-}
-
 static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, int split, const uint8_t *unseen,
                            weft_error *error)
 {
     weft_dataset *others;
     weft_compress_report report;
     weft_compress_options options = model->options;
-    options.levels = has_levels(bench, model);
+    options.levels = bench->has_pictures && !bench->for_pictures_alone && options.budget_bytes == 0;
     options.heights = false; /* those of the whole dataset are given afterwards */
-    options.rounded = false; /* and so are components rounded */
     WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(bench->dataset), &fitted_excerpt(bench, model)->layout,
                                         false, &model->options, &options.budget_bytes, error));
     options.added_bytes = 0;
@@ -190,17 +174,7 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     if (code != WEFT_OK)
         return code;
     bench->fit_s += report.seconds;
-    bench->rounding_step[split] = report.components.rounding_step;
     return WEFT_OK;
-}
-
-static weft_code make_predictor(const weft_held_bench *bench, const weft_priced_model *model,
-                                const weft_material *material, weft_predictor **predictor, weft_error *error)
-{
-    const weft_dataset_layout *layout = &fitted_excerpt(bench, model)->layout;
-    const weft_predicted_window *window = &fitted_excerpt(bench, model)->window;
-    return model->fewer_texels ? weft_predictor_of_coarser_material(layout, window, material, predictor, error)
-                               : weft_predictor_of_window(layout, window, material, predictor, error);
 }
 
 /* ---- Errors ---- */
@@ -300,8 +274,7 @@ static weft_code give_heights(const weft_held_bench *bench, const weft_priced_mo
 {
     const weft_excerpt *excerpt = &bench->excerpt;
     const weft_predicted_window *window = &excerpt->window;
-    bool helps = excerpt->surface.level_count > (model->fewer_texels ? 1 : 0);
-    if (!model->options.heights || !weft_excerpt_has_surface(excerpt) || !material->components || !helps)
+    if (!model->options.heights || !weft_excerpt_has_surface(excerpt) || !material->components)
         return WEFT_OK;
     WEFT_TRY(weft_excerpt_give_heights(excerpt, material, error));
     double share =
@@ -313,20 +286,18 @@ static weft_code give_heights(const weft_held_bench *bench, const weft_priced_mo
 static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, int split,
                               const weft_trial *trial, said *answer, weft_weight *weight, weft_error *error)
 {
-    weft_material material;
+    const weft_excerpt *fitted = fitted_excerpt(bench, model);
+    weft_material *material = &bench->material[split];
     weft_predictor *predictor;
-    WEFT_TRY(weft_variant_make(&bench->material[split], model, bench->rounding_step[split], bench->material_path,
-                               &material, error));
-    weft_code code = weft_weight_of(&material, weight, error);
+    WEFT_TRY(weft_weight_of(material, weight, error));
+    weft_code code = give_heights(bench, model, material, weight, error);
     if (code == WEFT_OK)
-        code = give_heights(bench, model, &material, weight, error);
-    if (code == WEFT_OK)
-        code = make_predictor(bench, model, &material, &predictor, error);
+        code = weft_predictor_of_window(&fitted->layout, &fitted->window, material, &predictor, error);
     if (code == WEFT_OK) {
         code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
         weft_predictor_free(predictor);
     }
-    weft_material_free(&material);
+    weft_material_take_heights(material, NULL);
     return code;
 }
 

@@ -119,7 +119,8 @@ static weft_code compare_shown(const weft_image_pair *pair, const uint8_t *kinds
     if (code == WEFT_OK)
         code = measure_quality(&sample, &predicted, kinds, measured, error);
     if (code == WEFT_OK && keep) {
-        weft_held_error_free(measured);
+        weft_image_free(&measured->sample);
+        weft_image_free(&measured->predicted);
         measured->worst_image = pair->image;
         measured->sample = sample;
         measured->predicted = predicted;

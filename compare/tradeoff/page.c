@@ -1,8 +1,9 @@
-#include "base/text/html_page.h"
-#include "compare/tradeoff/plot.h"
+#include "base/text/chart.h"
 #include "compare/tradeoff/tradeoff.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { NAME = 64, SHOWN_WIDTH = 96 };
@@ -22,7 +23,7 @@ static void put_texels(weft_page *page, const weft_tradeoff *tradeoff)
     }
     fprintf(page->html,
             "<p class=\"note\">Errors are those of %ld texels that lie spread, of lobes of %ld, as in the file of a "
-            "material; pictures, and errors of fewer texels and of cloth, are those of %ld texels in the middle",
+            "material; pictures, and errors of cloth, are those of %ld texels in the middle",
             tradeoff->measured_texels, tradeoff->lobe_texels, tradeoff->neighbours);
     if (tradeoff->split_count > 1)
         fprintf(page->html, "; others are held out %d times", tradeoff->split_count);
@@ -82,11 +83,9 @@ static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
             tradeoff->row_count, tradeoff->width, tradeoff->height, tradeoff->image_count, held);
     put_choices(page, tradeoff);
     put_texels(page, tradeoff);
-    if (tradeoff->costly_texels < tradeoff->texels)
-        fprintf(page->html,
-                "; bytes and times of fits are those of %ld texels, with S, T by components or T of fewer photographs "
-                "of %ld, and the rest in proportion; frames show these",
-                tradeoff->fitted_texels, tradeoff->costly_texels);
+    if (tradeoff->fitted_texels < tradeoff->texels)
+        fprintf(page->html, "; bytes and times of fits are those of %ld texels in proportion; frames show these",
+                tradeoff->fitted_texels);
     fprintf(page->html, ". Times are those of this machine, with %d threads, while this page was made in %.0f s. ",
             tradeoff->threads, tradeoff->seconds);
     if (tradeoff->why_not_drawn[0])
@@ -98,62 +97,84 @@ static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
     fputs(". The table as numbers: <a href=\"tradeoff.csv\">tradeoff.csv</a>.</p>\n", page->html);
 }
 
-/* ---- Plots ---- */
+/* ---- Charts ---- */
 
-static void print_label(const weft_tradeoff_row *row, char *label, size_t size)
+enum { RINGS = WEFT_PRICED_FAMILIES, FRONT, SERIES };
+
+/* A series holds all rows; those that are not of it have no place. */
+typedef struct price_chart {
+    double point[SERIES][WEFT_PRICED_MOST][2];
+    weft_chart_note note[WEFT_PRICED_MOST];
+    char text[WEFT_PRICED_MOST][2 * NAME], target[WEFT_PRICED_MOST][NAME];
+} price_chart;
+
+static double x_of(const weft_tradeoff_row *row, int which)
 {
+    return which == 0 ? row->price.bytes : which == 1 ? row->price.frame_ms : row->price.fit_s;
+}
+
+static bool is_of_series(const weft_tradeoff_row *row, int series)
+{
+    if (series == RINGS)
+        return row->is_chosen[WEFT_PRESET_NONE];
+    return series == FRONT ? !row->is_beaten && row->model.arguments[0] : (int)row->model.family == series;
+}
+
+static void add_row(const weft_tradeoff *tradeoff, int which, int i, price_chart *chart)
+{
+    const weft_tradeoff_row *row = &tradeoff->row[i];
     char presets[NAME];
     weft_tradeoff_print_presets(row, presets, sizeof presets);
-    snprintf(label, size, "%s%s%s", presets, presets[0] ? ": " : "", row->model.name);
+    snprintf(chart->text[i], sizeof chart->text[i], "%s%s%s", presets, presets[0] ? ": " : "", row->model.name);
+    snprintf(chart->target[i], NAME, "model-%d", i + 1);
+    chart->note[i] = (weft_chart_note){chart->text[i], chart->target[i]};
+    for (int s = 0; s < SERIES; s++) {
+        chart->point[s][i][0] = is_of_series(row, s) ? x_of(row, which) : NAN;
+        chart->point[s][i][1] = 100 * error_of(row);
+    }
 }
 
-static double x_of(const weft_tradeoff_row *row, int plot)
+/* What has no place comes last. */
+static int compare_x(const void *left, const void *right)
 {
-    return plot == 0 ? row->price.bytes : plot == 1 ? row->price.frame_ms : row->price.fit_s;
+    const double *a = left, *b = right;
+    return isnan(*a) || isnan(*b) ? isnan(*a) - isnan(*b) : (*a > *b) - (*a < *b);
 }
 
-static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int which, weft_error *error)
+static void put_chart(weft_page *page, const weft_tradeoff *tradeoff, int which)
 {
     static const char *const title[] = {"Error by size", "Error by time of a frame", "Error by time of the fit"};
     static const char *const x_label[] = {"bytes of the file", "ms a frame", "seconds"};
-    weft_plot_point point[WEFT_PRICED_MOST];
-    char label[WEFT_PRICED_MOST][2 * NAME], target[WEFT_PRICED_MOST][NAME], picture[WEFT_PRICED_MOST][NAME];
-    for (int i = 0; i < tradeoff->row_count; i++) {
-        const weft_tradeoff_row *row = &tradeoff->row[i];
-        print_label(row, label[i], sizeof label[i]);
-        snprintf(target[i], NAME, "model-%d", i + 1);
-        snprintf(picture[i], NAME, "model-%d.png", i + 1);
-        point[i] = (weft_plot_point){.x = x_of(row, which),
-                                     .y = 100 * error_of(row),
-                                     .number = i + 1,
-                                     .colour = (int)row->model.family,
-                                     .label = label[i],
-                                     .picture = row->measured.picture_count > 0 ? picture[i] : NULL,
-                                     .target = target[i],
-                                     .is_marked = row->is_chosen[WEFT_PRESET_NONE],
-                                     .is_joined = which == 0 && !row->is_beaten && row->model.arguments[0]};
-    }
-    const weft_plot plot = {title[which], x_label[which], "relative RMSE, not fitted (%)", tradeoff->row_count, point};
-    return weft_plot_write(page, &plot, error);
+    price_chart chart;
+    weft_chart_series series[SERIES];
+    for (int i = 0; i < tradeoff->row_count; i++)
+        add_row(tradeoff, which, i, &chart);
+    qsort(chart.point[FRONT], (size_t)tradeoff->row_count, sizeof *chart.point[FRONT], compare_x);
+    for (int s = 0; s < FRONT; s++)
+        series[s] = (weft_chart_series){s == RINGS ? "chosen by a preset" : weft_priced_family_name(s),
+                                        s == RINGS ? 1 : s,
+                                        s == RINGS ? WEFT_CHART_RINGS : WEFT_CHART_POINTS,
+                                        tradeoff->row_count,
+                                        (const double(*)[2])chart.point[s],
+                                        chart.note};
+    series[FRONT] = (weft_chart_series){
+        "not beaten", 6, WEFT_CHART_STEPS, tradeoff->row_count, (const double(*)[2])chart.point[FRONT], NULL};
+    weft_chart_write_logarithmic(page, &(weft_chart){title[which],
+                                                     {x_label[which], "", 0, 0, 0},
+                                                     {"relative RMSE, not fitted", " %", 0, 0, 0},
+                                                     which == 0 ? SERIES : FRONT,
+                                                     series});
 }
 
-static weft_code put_plots(weft_page *page, const weft_tradeoff *tradeoff, weft_error *error)
+static void put_charts(weft_page *page, const weft_tradeoff *tradeoff)
 {
-    static const char *const family[] = {
-        "lobes", "lobes and tables", "components", "fewer photographs or texels", "the photographs, interpolated",
-        "BARD",  "analytic cloth"};
-    fputs("<p class=\"key\">", page->html);
-    for (int i = 0; i < WEFT_PRICED_FAMILIES; i++)
-        fprintf(page->html, "<span class=\"colour%d\">\u25cf</span> %s ", i, family[i]);
-    fputs("</p>\n<div class=\"plots\">\n", page->html);
-    for (int i = 0; i < 3; i++)
-        WEFT_TRY(put_plot(page, tradeoff, i, error));
-    fputs(
-        "</div>\n<p class=\"note\">Both axes are logarithmic; lower and further left is better. The line joins the "
-        "models of <code>weft compress</code> that no other of them beats in bytes and error; rings mark the presets. "
-        "Point at a disc to see the model under the light at which it is worst; a click leads to its row.</p>\n",
-        page->html);
-    return WEFT_OK;
+    fputs("<div class=\"plots\">\n", page->html);
+    for (int which = 0; which < 3; which++)
+        put_chart(page, tradeoff, which);
+    fputs("</div>\n<p class=\"note\">Both axes are logarithmic; lower and further left is better. The staircase joins "
+          "the models of <code>weft compress</code> that no other of them beats in bytes and error; rings mark the "
+          "presets. A click on a point leads to its row.</p>\n",
+          page->html);
 }
 
 /* ---- Table ---- */
@@ -221,22 +242,21 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
               "photographs|:weft compress");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
-    fputs(
-        "</table>\n"
-        "<p class=\"note\">A model without options of <code>weft compress</code> shows what would be saved: T rounded "
-        "to fewer bits is what <code>--budget</code> mixes texel by texel; fewer photographs are a shorter capture. "
-        "Evaluations: BRDFs at places and directions drawn at random, one thread. Reads of textures and bytes of all "
-        "texels that the hardware interpolates, for a pixel under one light; through heights as many as the longest "
-        "sight line takes. Grazing: view or light 52.5\u00b0 or more "
-        "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
-        "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
-        "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
-        "of an interval that held so many of these samples, in parts of the mean sample. Strobing: while a light "
-        "sweeps "
-        "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
-        "BARD, "
-        "which has no frames.</p>\n",
-        page->html);
+    fputs("</table>\n"
+          "<p class=\"note\">A model without options of <code>weft compress</code> shows what would be saved: fewer "
+          "photographs are a shorter capture. "
+          "Evaluations: BRDFs at places and directions drawn at random, one thread. Reads of textures and bytes of all "
+          "texels that the hardware interpolates, for a pixel under one light; through heights as many as the longest "
+          "sight line takes. Grazing: view or light 52.5\u00b0 or more "
+          "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
+          "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
+          "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
+          "of an interval that held so many of these samples, in parts of the mean sample. Strobing: while a light "
+          "sweeps "
+          "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
+          "BARD, "
+          "which has no frames.</p>\n",
+          page->html);
 }
 
 /* ---- Pictures ---- */
@@ -321,11 +341,10 @@ weft_code weft_tradeoff_write_page(const weft_tradeoff *tradeoff, const char *da
     weft_page page;
     WEFT_TRY(weft_page_begin(folder, title, &page, error));
     put_summary(&page, tradeoff);
-    weft_code code = put_plots(&page, tradeoff, error);
+    put_charts(&page, tradeoff);
     put_table(&page, tradeoff);
     put_picture_table(&page, tradeoff);
-    if (code == WEFT_OK)
-        code = put_pictures(&page, tradeoff, error);
+    weft_code code = put_pictures(&page, tradeoff, error);
     if (code == WEFT_OK)
         return weft_page_finish(&page, error);
     weft_page_abandon(&page);

@@ -34,12 +34,9 @@ static weft_compress_options merge(const weft_compress_options *given, const wef
     weft_compress_options merged = *given;
     merged.lobe_count = chosen->lobe_count;
     merged.table = chosen->table;
-    merged.light_table = chosen->light_table;
-    merged.frames = chosen->frames;
     merged.component_count = chosen->component_count;
     merged.rounded = chosen->rounded;
     merged.heights = chosen->heights;
-    merged.table_components = chosen->table_components;
     return merged;
 }
 
@@ -48,7 +45,7 @@ static weft_code list_given(choosing *work, weft_error *error)
 {
     weft_priced_model *model = &work->model[work->count++];
     const weft_compress_options *given = work->given;
-    *model = (weft_priced_model){.family = WEFT_PRICED_TABLES, .options = *given};
+    *model = (weft_priced_model){.family = WEFT_PRICED_LOBES, .options = *given};
     model->options.checkpoint_path = NULL;
     if (given->target_error > 0)
         snprintf(model->arguments, sizeof model->arguments, "--error %g", 100 * given->target_error);
@@ -71,7 +68,7 @@ static void list_models(choosing *work)
     parts.has_surface = parts.has_surface && work->given->heights;
     int count = weft_priced_models_list(layout, &parts, work->model);
     for (int i = 0; i < count; i++) {
-        if (!work->model[i].arguments[0] || work->model[i].options.light_table)
+        if (!work->model[i].arguments[0])
             continue;
         work->model[work->count] = work->model[i];
         work->model[work->count].options = merge(work->given, &work->model[i].options);

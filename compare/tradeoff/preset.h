@@ -14,12 +14,11 @@ typedef struct weft_preset_wish {
     int measured_splits; /* that are asked for afterwards; < 1: weft_hold_out_enough_splits */
 } weft_preset_wish;
 
-/* Chooses among the models that weft compress makes (compare/tradeoff/choice.h), without those of a light table, which
- * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels, or of a dataset with a surface
- * measures each on 32 x 32, without the images of weft_hold_out_enough_splits splits, none of which the measurement
- * afterwards takes, and finds for the one that is chosen how large its file will be and how
- * long a frame takes (weft_prediction_find_costs). One that is too slow is chosen no longer, and the preset chooses
- * among the others. *options gets lobes, tables, frames, components and whether through heights, and keeps all else.
+/* Chooses among the models that weft compress makes (compare/tradeoff/choice.h). Fits each to at most 24 x 24 texels,
+ * or of a dataset with a surface measures each on 32 x 32, without the images of weft_hold_out_enough_splits splits,
+ * none of which the measurement afterwards takes, and finds for the one that is chosen how large its file will be and
+ * how long a frame takes (weft_prediction_find_costs). One that is too slow is chosen no longer, and the preset chooses
+ * among the others. *options gets lobes, components and whether through heights, and keeps all else.
  * Without a preset there is one model, that of the options, which stay as they are. Writes to the folder of
  * `scratch_path`; nothing is left there. The result does not depend on the number of
  * threads; with least_fps it depends on the machine. Errors: WEFT_BAD_USAGE for a dataset of one image, where all that

@@ -7,7 +7,6 @@
 #include "compare/tradeoff/cloth.h"
 #include "compare/tradeoff/frame_timer.h"
 #include "compare/tradeoff/strobing.h"
-#include "compare/tradeoff/variant.h"
 #include "compare/tradeoff/weight.h"
 #include "compress/bard/texels.h"
 #include "compress/compress.h"
@@ -23,43 +22,28 @@ enum { EVALUATIONS_AT_ONCE = 64 };
 
 static const double evaluating_s = 0.1, largest_theta_rad = 1.3;
 
-/* What is fitted of a dataset. */
-typedef struct fitted_block {
-    weft_dataset *dataset; /* the whole where that is small */
-    int side;
-    double share; /* of the texels */
-} fitted_block;
-
-enum { BLOCK_USUAL, BLOCK_OF_COSTLY, BLOCKS };
-
 struct weft_price_shop {
     weft_dataset *dataset; /* the whole */
-    fitted_block block[BLOCKS];
+    weft_dataset *block;   /* what is fitted: the whole where that is small */
+    int side;
+    double share; /* of the texels that are fitted */
     const char *scratch_path;
     const weft_progress *progress;
     char *material_path;
     weft_frame_timer *timer;
-    bool is_fitted, is_drawn; /* drawn: the fit is, as `drawn_model` */
-    weft_priced_model fitted_model, drawn_model;
-    double drawn_ms, drawn_large_ms;
+    bool is_fitted;
+    weft_priced_model fitted_model;
     weft_material fitted;
-    double rounding_step; /* of its components */
     double fit_s;
 };
 
 /* ---- The shop ---- */
 
-static const fitted_block *block_of(const weft_price_shop *shop, const weft_priced_model *model)
-{
-    return &shop->block[weft_priced_model_is_costly(model) ? BLOCK_OF_COSTLY : BLOCK_USUAL];
-}
-
 /* The middle of the dataset, without some images (left_out [image_count]; NULL: all). */
-static weft_code write_block(weft_price_shop *shop, int side, const uint8_t *left_out, weft_dataset **block,
-                             weft_error *error)
+static weft_code write_block(weft_price_shop *shop, const uint8_t *left_out, weft_dataset **block, weft_error *error)
 {
     weft_excerpt excerpt;
-    WEFT_TRY(weft_excerpt_read(shop->dataset, WEFT_EXCERPT_BLOCK, side, &excerpt, error));
+    WEFT_TRY(weft_excerpt_read(shop->dataset, WEFT_EXCERPT_BLOCK, shop->side, &excerpt, error));
     uint8_t *none = left_out ? NULL : calloc((size_t)excerpt.layout.image_count, 1);
     weft_code code = left_out || none ? WEFT_OK : weft_fail_memory(error, "images", (size_t)excerpt.layout.image_count);
     if (code == WEFT_OK)
@@ -75,37 +59,30 @@ static long texels_of(const weft_dataset *dataset)
     return (long)layout->width * layout->height;
 }
 
-static weft_code prepare_block(weft_price_shop *shop, int side, fitted_block *block, weft_error *error)
+static weft_code prepare(weft_price_shop *shop, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    *block = (fitted_block){shop->dataset, side, 1};
-    if (layout->width > side || layout->height > side)
-        WEFT_TRY(write_block(shop, side, NULL, &block->dataset, error));
-    block->share = (double)texels_of(block->dataset) / (double)texels_of(shop->dataset);
-    return WEFT_OK;
-}
-
-static weft_code prepare(weft_price_shop *shop, weft_price_sides sides, weft_error *error)
-{
     if (asprintf(&shop->material_path, "%s.weft", shop->scratch_path) < 0) {
         shop->material_path = NULL;
         return weft_fail_memory(error, "path", strlen(shop->scratch_path));
     }
-    WEFT_TRY(prepare_block(shop, sides.usual, &shop->block[BLOCK_USUAL], error));
-    WEFT_TRY(prepare_block(shop, sides.costly, &shop->block[BLOCK_OF_COSTLY], error));
+    if (layout->width > shop->side || layout->height > shop->side)
+        WEFT_TRY(write_block(shop, NULL, &shop->block, error));
+    shop->share = (double)texels_of(shop->block) / (double)texels_of(shop->dataset);
     return weft_frame_timer_open(&shop->timer, error);
 }
 
-weft_code weft_price_shop_open(weft_dataset *dataset, weft_price_sides sides, const char *scratch_path,
-                               const weft_progress *progress, weft_price_shop **result, weft_error *error)
+weft_code weft_price_shop_open(weft_dataset *dataset, int side, const char *scratch_path, const weft_progress *progress,
+                               weft_price_shop **result, weft_error *error)
 {
     weft_price_shop *shop = calloc(1, sizeof *shop);
     if (!shop)
         return weft_fail_memory(error, "prices", sizeof *shop);
-    shop->dataset = dataset;
+    shop->dataset = shop->block = dataset;
+    shop->side = side;
     shop->scratch_path = scratch_path;
     shop->progress = progress;
-    weft_code code = prepare(shop, sides, error);
+    weft_code code = prepare(shop, error);
     if (code == WEFT_OK)
         *result = shop;
     else
@@ -118,18 +95,16 @@ void weft_price_shop_close(weft_price_shop *shop)
     if (!shop)
         return;
     weft_frame_timer_close(shop->timer);
-    for (int i = 0; i < BLOCKS; i++) {
-        if (shop->block[i].dataset != shop->dataset)
-            weft_dataset_close(shop->block[i].dataset);
-    }
+    if (shop->block != shop->dataset)
+        weft_dataset_close(shop->block);
     weft_material_free(&shop->fitted);
     free(shop->material_path);
     free(shop);
 }
 
-long weft_price_shop_texels(const weft_price_shop *shop, bool of_costly)
+long weft_price_shop_texels(const weft_price_shop *shop)
 {
-    return texels_of(shop->block[of_costly ? BLOCK_OF_COSTLY : BLOCK_USUAL].dataset);
+    return texels_of(shop->block);
 }
 
 const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop)
@@ -199,15 +174,13 @@ static weft_code fit_block(weft_price_shop *shop, const weft_priced_model *model
                            weft_error *error)
 {
     weft_compress_report report;
-    shop->is_fitted = shop->is_drawn = false;
+    shop->is_fitted = false;
     weft_material_free(&shop->fitted);
     weft_compress_options options = model->options;
-    options.heights = true;  /* variants do without them */
-    options.rounded = false; /* and round by themselves */
+    options.heights = false; /* they are given afterwards */
     WEFT_TRY(weft_compress(block, &options, NULL, &shop->fitted, &report, error));
     shop->is_fitted = true;
     shop->fitted_model = *model;
-    shop->rounding_step = report.components.rounding_step;
     shop->fit_s = report.seconds;
     return WEFT_OK;
 }
@@ -218,8 +191,8 @@ static weft_code fit(weft_price_shop *shop, const weft_priced_model *model, cons
     if (shop->is_fitted && weft_priced_models_share_fit(model, &shop->fitted_model))
         return WEFT_OK;
     if (model->photographs == WEFT_PHOTOGRAPHS_ALL)
-        return fit_block(shop, model, block_of(shop, model)->dataset, error);
-    WEFT_TRY(write_block(shop, block_of(shop, model)->side, left_out, &some, error));
+        return fit_block(shop, model, shop->block, error);
+    WEFT_TRY(write_block(shop, left_out, &some, error));
     weft_code code = fit_block(shop, model, some, error);
     weft_dataset_close(some);
     return code;
@@ -227,47 +200,22 @@ static weft_code fit(weft_price_shop *shop, const weft_priced_model *model, cons
 
 /* ---- Prices ---- */
 
-/* Of the same fit, as many texels and heights or none: then as much is drawn. */
-static bool is_drawn_alike(const weft_price_shop *shop, const weft_priced_model *model)
-{
-    const weft_priced_model *drawn = &shop->drawn_model;
-    return shop->is_drawn && model->fewer_texels == drawn->fewer_texels &&
-           model->options.heights == drawn->options.heights;
-}
-
-static weft_code draw_material(weft_price_shop *shop, const weft_priced_model *model, const weft_material *material,
-                               weft_price *price, weft_error *error)
-{
-    if (!is_drawn_alike(shop, model)) {
-        shop->is_drawn = false;
-        WEFT_TRY(weft_frame_timer_of_material(shop->timer, material, &shop->drawn_ms, error));
-        WEFT_TRY(weft_frame_timer_again_large(shop->timer, &shop->drawn_large_ms, error));
-        shop->is_drawn = true;
-        shop->drawn_model = *model;
-    }
-    price->frame_ms = shop->drawn_ms;
-    price->large_frame_ms = shop->drawn_large_ms;
-    return WEFT_OK;
-}
-
-static weft_code price_material(weft_price_shop *shop, const weft_priced_model *model, const weft_material *material,
-                                weft_price *price, weft_error *error)
+static weft_code price_material(weft_price_shop *shop, const weft_material *material, weft_price *price,
+                                weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    const fitted_block *block = block_of(shop, model);
     weft_weight weight;
     WEFT_TRY(weft_weight_of(material, &weight, error));
-    int smaller = material->level[0].width < weft_dataset_get_layout(block->dataset)->width ? 2 : 1;
-    price->bytes = weft_weight_scaled(&weight, (layout->width + smaller - 1) / smaller,
-                                      (layout->height + smaller - 1) / smaller, material->level_count > 1);
+    price->bytes = weft_weight_scaled(&weight, layout->width, layout->height, material->level_count > 1);
     price->bits_a_texel = 8 * price->bytes / ((double)layout->width * layout->height);
-    price->fit_s = shop->fit_s / block->share;
+    price->fit_s = shop->fit_s / shop->share;
     price->fetches = weft_fetches_of_material(material);
     WEFT_TRY(weft_material_write(shop->material_path, material, error));
     weft_code code = evaluate(shop->material_path, true, price, error);
     unlink(shop->material_path);
     WEFT_TRY(code);
-    return draw_material(shop, model, material, price, error);
+    WEFT_TRY(weft_frame_timer_of_material(shop->timer, material, &price->frame_ms, error));
+    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
 }
 
 /* That of the whole dataset, which a block of it does not have: it is the larger part of the metadata. */
@@ -284,8 +232,8 @@ static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_pri
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
     price->fetches = weft_fetches_of_raw(through_heights);
     WEFT_TRY(evaluate(weft_dataset_path(shop->dataset), through_heights, price, error));
-    WEFT_TRY(weft_frame_timer_of_dataset(shop->timer, shop->block[BLOCK_USUAL].dataset, through_heights, shop->progress,
-                                         &price->frame_ms, error));
+    WEFT_TRY(weft_frame_timer_of_dataset(shop->timer, shop->block, through_heights, shop->progress, &price->frame_ms,
+                                         error));
     return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
 }
 
@@ -302,7 +250,7 @@ static weft_code price_opened_cloth(weft_price_shop *shop, const char *given, we
                                     weft_price *price, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    WEFT_TRY(weft_priced_cloth_fit(cloth, shop->block[BLOCK_USUAL].dataset, error));
+    WEFT_TRY(weft_priced_cloth_fit(cloth, shop->block, error));
     if (!cloth->is_threads)
         WEFT_TRY(weft_priced_cloth_write(cloth, shop->material_path, error));
     const char *path = cloth->is_threads ? given : shop->material_path;
@@ -328,7 +276,7 @@ static weft_code price_cloth(weft_price_shop *shop, const char *given, weft_pric
 }
 
 static weft_code price_model(weft_price_shop *shop, const weft_priced_model *model, const uint8_t *left_out,
-                             weft_price *price, bool *has_parts, weft_error *error)
+                             weft_price *price, weft_error *error)
 {
     if (model->family == WEFT_PRICED_RAW)
         return price_raw(shop, model->options.heights, price, error);
@@ -339,30 +287,23 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
         return WEFT_OK;
     }
     WEFT_TRY(fit(shop, model, left_out, error));
-    *has_parts = !model->options.light_table || shop->fitted.light_count > 0;
-    if (!*has_parts)
-        return WEFT_OK;
-    weft_material material;
-    WEFT_TRY(weft_variant_make(&shop->fitted, model, shop->rounding_step, shop->material_path, &material, error));
-    weft_code code = give_provenance(shop, &material, error);
-    if (code == WEFT_OK)
-        code = price_material(shop, model, &material, price, error);
-    weft_material_free(&material);
-    return code;
+    weft_material_take_heights(&shop->fitted, NULL);
+    if (model->options.heights)
+        WEFT_TRY(weft_compress_take_heights(shop->block, &shop->fitted, error));
+    WEFT_TRY(give_provenance(shop, &shop->fitted, error));
+    return price_material(shop, &shop->fitted, price, error);
 }
 
-weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, bool *has_parts,
-                         weft_error *error)
+weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
     uint8_t *left_out = malloc((size_t)layout->image_count);
     if (!left_out)
         return weft_fail_memory(error, "images", (size_t)layout->image_count);
     *price = (weft_price){0};
-    *has_parts = true;
     weft_code code = weft_photographs_leave_out(layout, model->photographs, left_out, &price->photograph_count, error);
     if (code == WEFT_OK)
-        code = price_model(shop, model, left_out, price, has_parts, error);
+        code = price_model(shop, model, left_out, price, error);
     free(left_out);
     return code;
 }

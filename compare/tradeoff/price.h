@@ -22,31 +22,24 @@ typedef struct weft_price {
 /* A shop that fits all of the texels of a dataset, or the middle ones. */
 typedef struct weft_price_shop weft_price_shop;
 
-/* How many texels are fitted at most, along each side: of a model, and of one that takes long. Files are packed, so
- * that bytes of few texels are not quite in proportion. */
-typedef struct weft_price_sides {
-    int usual, costly;
-} weft_price_sides;
-
-/* A dataset of no more texels is fitted whole; of a larger one a block of as many, with bytes and times in
- * proportion. Raw and cloth have the usual block. Files are written to the folder of `scratch_path`, and are gone
- * afterwards. Both arguments must outlive the shop. The caller frees it. Errors: those of reading and writing. */
-weft_code weft_price_shop_open(weft_dataset *dataset, weft_price_sides sides, const char *scratch_path,
-                               const weft_progress *progress, weft_price_shop **result, weft_error *error);
+/* A dataset of at most side x side texels is fitted whole; of a larger one a block of as many, with bytes and times in
+ * proportion (files are packed, so that bytes of few texels are not quite in proportion). Files are written to the
+ * folder of `scratch_path`, and are gone afterwards. Both arguments must outlive the shop. The caller frees it. Errors:
+ * those of reading and writing. */
+weft_code weft_price_shop_open(weft_dataset *dataset, int side, const char *scratch_path, const weft_progress *progress,
+                               weft_price_shop **result, weft_error *error);
 void weft_price_shop_close(weft_price_shop *shop);
 
 /* Texels that are fitted. */
-long weft_price_shop_texels(const weft_price_shop *shop, bool of_costly);
+long weft_price_shop_texels(const weft_price_shop *shop);
 
 /* Why nothing is drawn, or "". */
 const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop);
 /* Who draws, or "". */
 const char *weft_price_shop_renderer(const weft_price_shop *shop);
 
-/* Fits the model, unless the one before has the same fit, and weighs and times it. What differs from the one before in
- * the numbers alone, by rounding, is drawn in the same time: it is that of the one before. *has_parts is false where
- * the dataset did not carry what the options ask for. Errors: those of weft_compress, of writing and drawing. */
-weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, bool *has_parts,
-                         weft_error *error);
+/* Fits the model, unless the one before has the same fit, and weighs and times it. Errors: those of weft_compress, of
+ * writing and drawing. */
+weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, weft_error *error);
 
 #endif

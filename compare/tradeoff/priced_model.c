@@ -11,7 +11,7 @@
 
 /* BARD is offered where so many views were photographed under the light along the normal: then none of these lights is
  * held out (compress/hold_out/split.h). */
-enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_COMPONENTS = 4, LEAST_RANK = 2, MAPS_COMPARED = 16 };
+enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_COMPONENTS = 4, MAPS_COMPARED = 16 };
 
 /* Of the images this share at least is left where a tenth of the views and a tenth of the lights are held out. */
 static const double least_share = 0.8;
@@ -31,12 +31,8 @@ static bool is_carried(const weft_dataset_layout *layout, const weft_compress_op
     weft_dataset_layout left = *layout;
     left.image_count = (int)(least_share * layout->image_count);
     int lobes;
-    bool has_table = weft_compress_plan(&left, options, &lobes) == WEFT_COMPRESS_TABLE;
-    int directions = left.image_count / 4 - 1 - 4 * options->lobe_count - layout->view_count;
-    bool has_light_table = has_table && directions >= layout->image_count / layout->view_count;
-    if (options->component_count > 0)
-        return true;
-    return lobes == options->lobe_count && has_table == options->table && (!options->light_table || has_light_table);
+    weft_compress_plan(&left, options, &lobes);
+    return options->component_count > 0 || lobes == options->lobe_count;
 }
 
 static weft_priced_model *add(model_list *list, weft_priced_family family, const weft_compress_options *options,
@@ -51,129 +47,46 @@ static weft_priced_model *add(model_list *list, weft_priced_family family, const
     return model;
 }
 
-static weft_compress_options lobes_and_table(int lobes, bool table)
+static weft_compress_options lobes_alone(int lobes)
 {
     weft_compress_options options = weft_compress_default_options();
     options.lobe_count = lobes;
-    options.table = table;
     options.component_count = 0;
     options.heights = false;
     return options;
 }
 
-static void print_lobes(int lobes, bool table, char name[WEFT_PRICED_NAME])
-{
-    const char *t = table ? ", T" : "";
-    if (lobes == 0)
-        snprintf(name, WEFT_PRICED_NAME, "diffuse%s", t);
-    else
-        snprintf(name, WEFT_PRICED_NAME, "%d lobe%s%s", lobes, lobes > 1 ? "s" : "", t);
-}
-
 static void add_lobes(model_list *list)
 {
-    for (int table = 0; table <= 1; table++) {
-        for (int lobes = 0; lobes <= WEFT_MATERIAL_MAX_LOBES; lobes++) {
-            weft_compress_options options = lobes_and_table(lobes, table);
-            char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
-            print_lobes(lobes, table, name);
-            snprintf(arguments, sizeof arguments, "--lobes %d%s", lobes, table ? "" : " --table off");
-            add(list, table ? WEFT_PRICED_TABLES : WEFT_PRICED_LOBES, &options, 2 + lobes, name, arguments);
-        }
-    }
-}
-
-/* A rounded model is of the fit before it. */
-static void add_rounded(model_list *list, const weft_compress_options *options)
-{
-    for (int bits = 6; bits >= 4; bits -= 2) {
-        char name[WEFT_PRICED_NAME];
-        snprintf(name, sizeof name, "2 lobes, T in %d bits", bits);
-        weft_priced_model *model = add(list, WEFT_PRICED_TABLES, options, 1, name, "");
-        if (model)
-            model->table_bits = bits;
-    }
-}
-
-static void add_coarser(model_list *list, const weft_compress_options *options, const char *name)
-{
-    weft_priced_model *model = add(list, WEFT_PRICED_FEWER, options, 1, name, "");
-    if (model)
-        model->fewer_texels = true;
-}
-
-static void add_tables(model_list *list)
-{
-    weft_compress_options options = lobes_and_table(2, true);
-    if (add(list, WEFT_PRICED_TABLES, &options, 4, "2 lobes, T", "--lobes 2")) {
-        add_rounded(list, &options);
-        add_coarser(list, &options, "2 lobes, T, half the texels a side");
-    }
-    options.frames = WEFT_FRAMES_SURFACE;
-    add(list, WEFT_PRICED_TABLES, &options, 2, "2 lobes, T, frames of the surface", "--lobes 2 --frames off");
-    options = lobes_and_table(2, true);
-    for (int components = 4; components <= 16; components *= 2) {
+    for (int lobes = 1; lobes <= WEFT_MATERIAL_MAX_LOBES; lobes++) {
+        weft_compress_options options = lobes_alone(lobes);
         char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
-        options.table_components = components;
-        snprintf(name, sizeof name, "2 lobes, T by %d components", components);
-        snprintf(arguments, sizeof arguments, "--lobes 2 --tables pca:%d", components);
-        add(list, WEFT_PRICED_TABLES, &options, 6, name, arguments);
+        snprintf(name, sizeof name, "%d lobe%s", lobes, lobes > 1 ? "s" : "");
+        snprintf(arguments, sizeof arguments, "--lobes %d", lobes);
+        add(list, WEFT_PRICED_LOBES, &options, 2 + lobes, name, arguments);
     }
-    options = lobes_and_table(2, true);
-    options.light_table = true;
-    add(list, WEFT_PRICED_TABLES, &options, 50, "2 lobes, T, S", "--lobes 2 --light-table on");
 }
 
-/* Beside components there is a diffuse term for players without them. */
 static weft_compress_options components_alone(const model_list *list, int components)
 {
-    weft_compress_options options = lobes_and_table(0, list->dataset->has_opacity);
+    weft_compress_options options = lobes_alone(0);
+    options.table = list->dataset->has_opacity;
     options.component_count = components;
+    options.rounded = true;
     options.heights = list->dataset->has_surface;
     return options;
 }
 
-static bool add_as_they_are_seen(model_list *list, const weft_compress_options *options, const char *seen,
-                                 const char *argument)
+static void add_components_seen(model_list *list, const weft_compress_options *options, const char *seen,
+                                const char *argument)
 {
     char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
-    snprintf(name, sizeof name, "%d components%s%s", options->component_count, options->rounded ? ", rounded" : "",
-             seen);
-    snprintf(arguments, sizeof arguments, "--components %d%s%s", options->component_count,
-             options->rounded ? " --rounding on" : "", argument);
-    return add(list, WEFT_PRICED_COMPONENTS, options, options->rounded ? 1 : 5, name, arguments);
+    snprintf(name, sizeof name, "%d components%s", options->component_count, seen);
+    snprintf(arguments, sizeof arguments, "--components %d --rounding on%s", options->component_count, argument);
+    add(list, WEFT_PRICED_COMPONENTS, options, 5, name, arguments);
 }
 
-/* Where there are heights, without them and then through them. */
-static bool add_numbers(model_list *list, const weft_compress_options *options)
-{
-    weft_compress_options without = *options;
-    if (!list->dataset->has_surface)
-        return add_as_they_are_seen(list, options, "", "");
-    without.heights = false;
-    return add_as_they_are_seen(list, &without, ", without heights", " --heights off") &&
-           add_as_they_are_seen(list, options, ", through heights", "");
-}
-
-/* With exact numbers, and the same with rounded ones. */
-static bool add_exact_and_rounded(model_list *list, const weft_compress_options *options)
-{
-    weft_compress_options rounded = *options;
-    rounded.rounded = true;
-    return add_numbers(list, options) && add_numbers(list, &rounded);
-}
-
-/* Files hold components by fours: the first ones of these. */
-static void add_least_rank(model_list *list, const weft_compress_options *options)
-{
-    char name[WEFT_PRICED_NAME];
-    snprintf(name, sizeof name, "%d components, the first of %d", LEAST_RANK, FEWEST_COMPONENTS);
-    weft_priced_model *model = add(list, WEFT_PRICED_COMPONENTS, options, 1, name, "");
-    if (model)
-        model->first_components = LEAST_RANK;
-}
-
-/* The two kinds of tables that components choose between, of a grid. */
+/* The kinds of maps that components choose between, of a grid. */
 static void add_kinds_of_maps(model_list *list, int components)
 {
     static const char *const over[] = {"the light", "the half vector"};
@@ -187,27 +100,25 @@ static void add_kinds_of_maps(model_list *list, int components)
     }
 }
 
+/* Where there are heights, without them and then through them. */
 static void add_components(model_list *list)
 {
     for (int components = FEWEST_COMPONENTS; components <= WEFT_COMPONENTS_MAX; components *= 2) {
-        weft_compress_options options = components_alone(list, components);
-        char name[WEFT_PRICED_NAME];
-        bool added = add_exact_and_rounded(list, &options);
-        if (added && components == FEWEST_COMPONENTS)
-            add_least_rank(list, &options);
-        snprintf(name, sizeof name, "%d components, half the texels a side", components);
-        if (added && components == 32)
-            add_coarser(list, &options, name);
+        weft_compress_options options = components_alone(list, components), without = options;
+        without.heights = false;
+        if (list->dataset->has_surface)
+            add_components_seen(list, &without, ", without heights", " --heights off");
+        add_components_seen(list, &options, list->dataset->has_surface ? ", through heights" : "", "");
     }
     add_kinds_of_maps(list, MAPS_COMPARED);
 }
 
 static void add_subset(model_list *list, weft_photographs_taken taken, const char *what)
 {
-    const weft_compress_options options[2] = {lobes_and_table(2, true), components_alone(list, 32)};
+    const weft_compress_options options[2] = {lobes_alone(2), components_alone(list, 32)};
     for (int i = 0; i < 2; i++) {
         char name[WEFT_PRICED_NAME];
-        snprintf(name, sizeof name, "%s, %s", i == 0 ? "2 lobes, T" : "32 components", what);
+        snprintf(name, sizeof name, "%s, %s", i == 0 ? "2 lobes" : "32 components", what);
         weft_priced_model *model = add(list, WEFT_PRICED_FEWER, &options[i], 3, name, "");
         if (model)
             model->photographs = taken;
@@ -262,34 +173,25 @@ bool weft_priced_heights_are_kept(double without, double through)
     return through <= WEFT_HOLD_OUT_HEIGHTS_GAIN * without;
 }
 
-static void mark_what_gives_fewer(model_list *list)
-{
-    for (int i = 0; i < list->count; i++) {
-        for (int later = i + 1; later < list->count; later++)
-            list->model[i].gives_fewer |=
-                list->model[later].fewer_texels && weft_priced_models_share_fit(&list->model[i], &list->model[later]);
-    }
-}
-
 int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
                             weft_priced_model *model)
 {
     model_list list = {.layout = layout, .dataset = dataset, .model = model};
     add_lobes(&list);
-    /* That of add_tables, which others share. */
-    for (int i = list.count - 1; i >= 0; i--) {
-        if (strcmp(model[i].name, "2 lobes, T") == 0)
-            memmove(&model[i], &model[i + 1], (size_t)(--list.count - i) * sizeof *model);
-    }
-    add_tables(&list);
     add_components(&list);
     add_subsets(&list);
     add_bard(&list);
     if (dataset->cloth)
         add_alone(&list, WEFT_PRICED_CLOTH, "analytic cloth");
     add_photographs(&list);
-    mark_what_gives_fewer(&list);
     return list.count;
+}
+
+const char *weft_priced_family_name(weft_priced_family family)
+{
+    static const char *const name[] = {"lobes",       "components", "fewer photographs",
+                                       "photographs", "BARD",       "analytic cloth"};
+    return name[family];
 }
 
 bool weft_priced_model_is_fit(const weft_priced_model *model)
@@ -304,18 +206,15 @@ bool weft_priced_model_is_of_lobes(const weft_priced_model *model)
 
 bool weft_priced_model_is_costly(const weft_priced_model *model)
 {
-    const weft_compress_options *options = &model->options;
-    return weft_priced_model_is_of_lobes(model) &&
-           (options->light_table || options->table_components > 0 || model->photographs != WEFT_PHOTOGRAPHS_ALL);
+    return weft_priced_model_is_of_lobes(model) && model->photographs != WEFT_PHOTOGRAPHS_ALL;
 }
 
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other)
 {
     const weft_compress_options *a = &model->options, *b = &other->options;
     return weft_priced_model_is_fit(model) && weft_priced_model_is_fit(other) && a->lobe_count == b->lobe_count &&
-           a->table == b->table && a->light_table == b->light_table && a->frames == b->frames &&
-           a->component_count == b->component_count && a->table_components == b->table_components &&
-           a->component_maps == b->component_maps && model->photographs == other->photographs;
+           a->component_count == b->component_count && a->component_maps == b->component_maps &&
+           model->photographs == other->photographs;
 }
 
 /* ---- Fewer photographs ---- */

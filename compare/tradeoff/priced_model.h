@@ -7,10 +7,9 @@
 enum { WEFT_PRICED_MOST = 64, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
 
 typedef enum weft_priced_family {
-    WEFT_PRICED_LOBES,
-    WEFT_PRICED_TABLES, /* lobes with T or S */
+    WEFT_PRICED_LOBES, /* with T where the photographs carry it */
     WEFT_PRICED_COMPONENTS,
-    WEFT_PRICED_FEWER, /* photographs or texels */
+    WEFT_PRICED_FEWER, /* photographs */
     WEFT_PRICED_RAW,   /* the photographs, interpolated */
     WEFT_PRICED_BARD,  /* those under the light along the normal, which say all others (reflectance/bard/bard.h) */
     WEFT_PRICED_CLOTH, /* analytic (compare/tradeoff/cloth.h) */
@@ -32,12 +31,8 @@ typedef struct weft_priced_model {
     weft_priced_family family;
     weft_compress_options options; /* of raw only heights: seen through them */
     weft_photographs_taken photographs;
-    int table_bits;       /* 4 or 6: T is rounded after the fit; 0: as it was fitted */
-    const char *cloth;    /* file of a WEFT_PRICED_CLOTH; not owned */
-    int first_components; /* these of the components alone, the most important; 0: all */
-    bool fewer_texels;    /* half of them along each side */
-    bool gives_fewer;     /* a later one with fewer texels is made from its fit */
-    int work;             /* of a fit, beside that of others */
+    const char *cloth; /* file of a WEFT_PRICED_CLOTH; not owned */
+    int work;          /* of a fit, relative to others */
 } weft_priced_model;
 
 /* What else of a dataset decides which models it can carry. */
@@ -47,12 +42,14 @@ typedef struct weft_priced_dataset {
     const char *cloth; /* file of a weave to be fitted, or of microcylinder cloth; NULL: none; not owned */
 } weft_priced_dataset;
 
+/* "lobes", "components", ... Pure. */
+const char *weft_priced_family_name(weft_priced_family family);
+
 /* Of a dataset, without analytic cloth. Pure. */
 weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset);
 
-/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
- * from the fit of another (table_bits, first_components, fewer_texels, options.heights, options.rounded) comes after
- * it; components through heights come right after the same without. Pure. */
+/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many.
+ * Components through heights come right after the same without, and are made from the same fit. Pure. */
 int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
                             weft_priced_model *model);
 
@@ -66,7 +63,7 @@ bool weft_priced_model_is_fit(const weft_priced_model *model);
 /* Whether it is such a fit of each texel alone: of lobes and tables, not of components. Pure. */
 bool weft_priced_model_is_of_lobes(const weft_priced_model *model);
 
-/* Whether its fit takes long for what it tells: S, T by components, or T of fewer photographs. Pure. */
+/* Whether its fit takes long: lobes of fewer photographs. Pure. */
 bool weft_priced_model_is_costly(const weft_priced_model *model);
 
 /* Whether the model is made from the same fit as the other. Pure. */

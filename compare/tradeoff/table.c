@@ -1,4 +1,4 @@
-/* The price list as JSON and as comma-separated values. */
+/* The price list as text, JSON and as comma-separated values. */
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "compare/tradeoff/tradeoff.h"
@@ -6,12 +6,30 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *family_name(weft_priced_family family)
+/* ---- Text ---- */
+
+void weft_tradeoff_print_held(const weft_tradeoff *tradeoff, char *text, size_t size)
 {
-    static const char *const name[] = {
-        "lobes", "lobes and tables", "components", "fewer photographs or texels", "photographs",
-        "BARD",  "analytic cloth"};
-    return name[family];
+    if (tradeoff->kind != WEFT_SPLIT_DIRECTIONS)
+        snprintf(text, size, "%d of %d photographs%s", tradeoff->image_held_count, tradeoff->image_count,
+                 tradeoff->kind == WEFT_SPLIT_EACH ? " in turn" : "");
+    else if (tradeoff->view_held_count == 0 || tradeoff->light_held_count == 0)
+        snprintf(text, size, "%d of %d %s", tradeoff->view_held_count + tradeoff->light_held_count,
+                 tradeoff->view_held_count > 0 ? tradeoff->view_count : tradeoff->light_count,
+                 tradeoff->view_held_count > 0 ? "views" : "lights");
+    else
+        snprintf(text, size, "%d of %d views and %d of %d lights", tradeoff->view_held_count, tradeoff->view_count,
+                 tradeoff->light_held_count, tradeoff->light_count);
+}
+
+void weft_tradeoff_print_presets(const weft_tradeoff_row *row, char *text, size_t size)
+{
+    text[0] = 0;
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++) {
+        size_t used = strlen(text);
+        if (row->is_chosen[preset])
+            snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", weft_preset_name(preset));
+    }
 }
 
 /* ---- JSON ---- */
@@ -50,12 +68,13 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
     const weft_held_error *m = &row->measured;
     char presets[64];
     weft_tradeoff_print_presets(row, presets, sizeof presets);
-    json_t *object = json_pack("{s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:i, s:i, s:s, s:b}", "model", row->model.name,
-                               "family", family_name(row->model.family), "options", row->model.arguments, "photographs",
-                               price->photograph_count, "bytes", price->bytes, "bits_a_texel", price->bits_a_texel,
-                               "fit_seconds", price->fit_s, "evaluations_a_second", price->evaluations_a_second,
-                               "texture_reads_a_pixel", price->fetches.reads, "fetched_bytes_a_pixel",
-                               price->fetches.bytes, "preset", presets, "beaten", row->is_beaten);
+    json_t *object =
+        json_pack("{s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:i, s:i, s:s, s:b}", "model", row->model.name, "family",
+                  weft_priced_family_name(row->model.family), "options", row->model.arguments, "photographs",
+                  price->photograph_count, "bytes", price->bytes, "bits_a_texel", price->bits_a_texel, "fit_seconds",
+                  price->fit_s, "evaluations_a_second", price->evaluations_a_second, "texture_reads_a_pixel",
+                  price->fetches.reads, "fetched_bytes_a_pixel", price->fetches.bytes, "preset", presets, "beaten",
+                  row->is_beaten);
     if (price->frame_ms > 0)
         weft_json_put(&object, "frame_ms", json_real(price->frame_ms));
     if (price->large_frame_ms > 0)
@@ -102,7 +121,7 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
     char presets[64];
     weft_tradeoff_print_presets(row, presets, sizeof presets);
     print_word(row->model.name, table);
-    print_word(family_name(row->model.family), table);
+    print_word(weft_priced_family_name(row->model.family), table);
     print_word(row->model.arguments, table);
     print_word(presets, table);
     fprintf(table, "%d,%.0f,%.4g,%.4g,%.4g,", price->photograph_count, price->bytes, price->bits_a_texel, price->fit_s,

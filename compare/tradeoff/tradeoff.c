@@ -11,9 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PICTURE_SIDE = 32 };
-
-static const weft_price_sides fitted_sides = {.usual = 64, .costly = 32};
+enum { PICTURE_SIDE = 32, PRICED_SIDE = 64 };
 
 /* Texels that lie spread are other ones for components, which need more of them. */
 enum { TEXELS_OF_LOBES, TEXELS_OF_COMPONENTS, TEXELS_OF_END };
@@ -36,7 +34,7 @@ typedef struct studying {
 /* NULL: the model needs neighbours. */
 static weft_held_bench *spread_bench_of(const studying *work, const weft_priced_model *model)
 {
-    if (model->fewer_texels || model->family == WEFT_PRICED_CLOTH)
+    if (model->family == WEFT_PRICED_CLOTH)
         return NULL;
     return work->spread[weft_priced_model_is_of_lobes(model) ? TEXELS_OF_LOBES : TEXELS_OF_COMPONENTS];
 }
@@ -62,15 +60,11 @@ static weft_code measure_model(const studying *work, weft_tradeoff_row *row, wef
     return WEFT_OK;
 }
 
-/* A row that turns out to have less than it asks for is not kept. */
 static weft_code study_model(studying *work, const weft_priced_model *model, weft_error *error)
 {
     weft_tradeoff_row *row = &work->result->row[work->result->row_count];
-    bool has_parts;
     *row = (weft_tradeoff_row){.model = *model};
-    WEFT_TRY(weft_price_ask(work->shop, model, &row->price, &has_parts, error));
-    if (!has_parts)
-        return WEFT_OK;
+    WEFT_TRY(weft_price_ask(work->shop, model, &row->price, error));
     WEFT_TRY(measure_model(work, row, error));
     work->result->row_count++;
     return WEFT_OK;
@@ -149,8 +143,7 @@ static void describe(studying *work)
     result->neighbours = weft_held_bench_texels(work->pictures);
     result->measured_texels = texels_of(work, TEXELS_OF_COMPONENTS);
     result->lobe_texels = texels_of(work, TEXELS_OF_LOBES);
-    result->fitted_texels = weft_price_shop_texels(work->shop, false);
-    result->costly_texels = weft_price_shop_texels(work->shop, true);
+    result->fitted_texels = weft_price_shop_texels(work->shop);
     result->texels = (long)layout->width * layout->height;
     result->threads = omp_get_max_threads();
     snprintf(result->why_not_drawn, sizeof result->why_not_drawn, "%s", weft_price_shop_why_not_drawn(work->shop));
@@ -200,7 +193,7 @@ static weft_code study(studying *work, const char *dataset_path, const char *fol
         return weft_fail_memory(error, "path", strlen(folder));
     }
     WEFT_TRY(open_benches(work, error));
-    WEFT_TRY(weft_price_shop_open(work->dataset, fitted_sides, work->scratch_path, work->progress, &work->shop, error));
+    WEFT_TRY(weft_price_shop_open(work->dataset, PRICED_SIDE, work->scratch_path, work->progress, &work->shop, error));
     describe(work);
     WEFT_TRY(study_models(work, error));
     choose(work->result);
@@ -244,28 +237,4 @@ void weft_tradeoff_free(weft_tradeoff *tradeoff)
     for (int i = 0; i < tradeoff->row_count; i++)
         weft_held_error_free(&tradeoff->row[i].measured);
     *tradeoff = (weft_tradeoff){0};
-}
-
-void weft_tradeoff_print_held(const weft_tradeoff *tradeoff, char *text, size_t size)
-{
-    if (tradeoff->kind != WEFT_SPLIT_DIRECTIONS)
-        snprintf(text, size, "%d of %d photographs%s", tradeoff->image_held_count, tradeoff->image_count,
-                 tradeoff->kind == WEFT_SPLIT_EACH ? " in turn" : "");
-    else if (tradeoff->view_held_count == 0 || tradeoff->light_held_count == 0)
-        snprintf(text, size, "%d of %d %s", tradeoff->view_held_count + tradeoff->light_held_count,
-                 tradeoff->view_held_count > 0 ? tradeoff->view_count : tradeoff->light_count,
-                 tradeoff->view_held_count > 0 ? "views" : "lights");
-    else
-        snprintf(text, size, "%d of %d views and %d of %d lights", tradeoff->view_held_count, tradeoff->view_count,
-                 tradeoff->light_held_count, tradeoff->light_count);
-}
-
-void weft_tradeoff_print_presets(const weft_tradeoff_row *row, char *text, size_t size)
-{
-    text[0] = 0;
-    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++) {
-        size_t used = strlen(text);
-        if (row->is_chosen[preset])
-            snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", weft_preset_name(preset));
-    }
 }

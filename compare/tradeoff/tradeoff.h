@@ -29,8 +29,7 @@ typedef struct weft_tradeoff {
     long measured_texels; /* whose error is measured: of components and photographs, ... */
     long lobe_texels;     /* ... of lobes, ... */
     long neighbours;      /* ... and of pictures */
-    long fitted_texels;   /* for prices, ... */
-    long costly_texels;   /* ... and of what takes long */
+    long fitted_texels;   /* for prices */
     long texels;          /* of the dataset */
     int threads;
     double seconds;
@@ -41,9 +40,8 @@ typedef struct weft_tradeoff {
  * weave, which is fitted, or microcylinder cloth, as it is; NULL: none), and writes folder/index.html with its pictures
  * and folder/tradeoff.csv; the page appears when it is complete. Errors are measured on the texels and the splits of
  * weft_hold_out_measure, as weft compress says them of a material; pictures on a block of at most 32 x 32 neighbouring
- * texels, and so are the errors of what needs neighbours: fewer texels, cloth, and all where the dataset has a surface,
- * near lights or a handful of photographs. Prices are of a block of at most 64 x 64, of what
- * takes long 32 x 32.
+ * texels, and so are the errors of what needs neighbours: cloth, and all where the dataset has a surface, near lights
+ * or a handful of photographs. Prices are of a block of at most 64 x 64.
  * Errors: WEFT_BAD_USAGE for a dataset of one image; those of weft_compress, of reading, writing and drawing. */
 weft_code weft_tradeoff_study(const char *dataset_path, const char *cloth, const char *folder,
                               const weft_progress *progress, weft_tradeoff *result, weft_error *error);

@@ -234,49 +234,6 @@ weft_code weft_predictor_of_window(const weft_dataset_layout *layout, const weft
     return code;
 }
 
-/* ---- A material of fewer texels ---- */
-
-static weft_rgb sample_material(const weft_predictor *predictor, weft_real u, weft_real v, weft_vec3 light,
-                                weft_vec3 view)
-{
-    const weft_components *components = predictor->material->components;
-    if (!components) {
-        weft_rgba value = weft_material_sample(predictor->material, &predictor->directions, 0, u, v, light, view);
-        return scaled(quantity(predictor->layout, light), (weft_rgb){value.r, value.g, value.b});
-    }
-    weft_rgb value = weft_components_sample_through(&predictor->maps, &predictor->relief, components->component_count,
-                                                    0, u, v, light, view);
-    return light.z > 0 ? scaled(quantity(predictor->layout, light) / light.z, value) : (weft_rgb){0};
-}
-
-static void predict_by_coarser(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
-                               weft_rgb *prediction)
-{
-    const weft_dataset_layout *layout = predictor->layout;
-    weft_real u = (x + 0.5) / layout->width, v = 1 - (y + 0.5) / layout->height;
-    for (int i = 0; i < image_count; i++) {
-        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
-        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
-        prediction[i] = sample_material(predictor, u, v, light, view);
-    }
-}
-
-weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_predicted_window *window,
-                                             const weft_material *material, weft_predictor **result, weft_error *error)
-{
-    WEFT_TRY(create(layout, predict_by_coarser, result, error));
-    (*result)->material = material;
-    (*result)->window = *window;
-    weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
-    if (code == WEFT_OK && material->components)
-        code = weft_component_maps_create(material->components, &(*result)->maps, error);
-    if (code == WEFT_OK && material->components && material->heights && layout->distance == WEFT_FAR)
-        code = prepare_heights(*result, error);
-    if (code != WEFT_OK)
-        weft_predictor_free(*result);
-    return code;
-}
-
 /* ---- Weave ---- */
 
 enum { SIDE = 4, POINTS = SIDE * SIDE };

@@ -25,11 +25,6 @@ weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const we
 weft_code weft_predictor_of_window(const weft_dataset_layout *layout, const weft_predicted_window *window,
                                    const weft_material *material, weft_predictor **result, weft_error *error);
 
-/* A material of fewer texels over the same area, as the player shows it at the centres of the texels of the dataset:
- * interpolated between its own, which repeat; through its heights where it has those. Errors: WEFT_SYSTEM. */
-weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_predicted_window *window,
-                                             const weft_material *material, weft_predictor **result, weft_error *error);
-
 /* A weave without its noise; a texel is the mean of 4 x 4 points. `tiles` lays it on the dataset or, where that is a
  * window of another (NULL: it is none), on the whole of that. The weave stays the caller's. Errors: WEFT_SYSTEM. */
 weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_predicted_window *window,

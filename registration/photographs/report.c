@@ -164,8 +164,9 @@ static void plot_tone(weft_page *page, const weft_hand *hand)
         camera[i][1] = (double)hand->tone.linear[i * (WEFT_TONE_STEPS / STEPS)];
         standard[i][1] = (double)srgb.linear[i * (WEFT_TONE_STEPS / STEPS)];
     }
-    const weft_chart_series series[] = {{"sRGB", 6, true, STEPS + 1, (const double(*)[2])standard},
-                                        {"the camera", 0, true, STEPS + 1, (const double(*)[2])camera}};
+    const weft_chart_series series[] = {
+        {"sRGB", 6, WEFT_CHART_LINE, STEPS + 1, (const double(*)[2])standard, NULL},
+        {"the camera", 0, WEFT_CHART_LINE, STEPS + 1, (const double(*)[2])camera, NULL}};
     const weft_chart chart = {"The tone curve", {"value in the file", "", 0, 1, 0}, {"light", "", 0, 1, 0}, 2, series};
     weft_chart_write(page, &chart);
 }

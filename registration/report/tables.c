@@ -103,7 +103,7 @@ static weft_code draw_stays(weft_page *page, const weft_session *session, const 
         point[count++][1] = quantity == STAY_ERROR ? 1000 * weft_registration_uncertainty_texels(session, r, stay)
                                                    : r->pose[stay].shift_mm;
     }
-    const weft_chart_series stays = {NULL, 0, false, count, (const double(*)[2])point};
+    const weft_chart_series stays = {.point_count = count, .point = (const double(*)[2])point};
     const weft_chart chart = {quantity == STAY_ERROR ? "Random error of every stay" : "Shift of every stay",
                               {"view from the normal", "\u00b0", 0, 75, 0},
                               {quantity == STAY_ERROR ? "thousandths of a texel" : "mm", "", 0, 0.1, 0},

@@ -63,7 +63,7 @@ static weft_code write_drift(weft_page *page, const weft_registration *r, double
         point[i][0] = r->survey.stay[i].stay;
         point[i][1] = level > 0 ? 100 * (level / overall - 1) : NAN;
     }
-    weft_chart_series stays = {NULL, 0, false, count, (const double(*)[2])point};
+    weft_chart_series stays = {.point_count = count, .point = (const double(*)[2])point};
     weft_chart chart = {"The lamp over the session",
                         {"stay of the camera", "", 0, 0, 1},
                         {"white level against the median", " %", -5, 5, 0},

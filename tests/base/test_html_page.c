@@ -84,7 +84,7 @@ static void a_chart_has_its_points_where_its_ticks_say(void **state)
     (void)state;
     weft_page page;
     const double point[][2] = {{0, -5}, {10, 20}, {5, NAN}, {20, 7.5}};
-    const weft_chart_series series = {HOSTILE, 1, true, 4, point};
+    const weft_chart_series series = {HOSTILE, 1, WEFT_CHART_LINE, 4, point, NULL};
     const weft_chart chart = {HOSTILE, {HOSTILE, "\u00b0", 0, 10, 0}, {"y", " %", 0, 1, 0}, 1, &series};
     assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
     weft_chart_write(&page, &chart);
@@ -106,12 +106,42 @@ static void a_chart_has_its_points_where_its_ticks_say(void **state)
     free(html);
 }
 
+static void points_lie_on_logarithmic_axes(void **state)
+{
+    (void)state;
+    weft_page page;
+    const double point[][2] = {{1, 100}, {10, 10}, {100, 1}, {0, 5}};
+    const weft_chart_note note[] = {{HOSTILE, "a"}, {"second", "b"}, {"third", "c"}, {"absent", "d"}};
+    const weft_chart_series series[] = {{"points", 1, WEFT_CHART_POINTS, 4, point, note},
+                                        {"stairs", 2, WEFT_CHART_STEPS, 3, point, NULL},
+                                        {"nothing", 3, WEFT_CHART_RINGS, 1, point + 3, NULL}};
+    const weft_chart chart = {"Powers", {"x", "", 0, 0, 0}, {"y", " %", 0, 0, 0}, 3, series};
+    assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
+    weft_chart_write_logarithmic(&page, &chart);
+    char *html = finished_page(&page);
+    double first[2], second[2], last[2];
+    place_of_disc(html, 0, first);
+    place_of_disc(html, 1, second);
+    place_of_disc(html, 2, last);
+    assert_true(fabs(second[0] - (first[0] + last[0]) / 2) < 0.11);
+    assert_true(fabs(second[1] - (first[1] + last[1]) / 2) < 0.11);
+    assert_true(last[0] > first[0] + 300 && last[1] > first[1] + 100);
+    assert_non_null(strstr(html, "<a href=\"#b\">"));
+    assert_non_null(strstr(html, "second, 10: 10 %"));
+    assert_non_null(strstr(html, "</tspan>stairs</text>"));
+    assert_null(strstr(html, "absent"));
+    assert_null(strstr(html, "nothing"));
+    assert_null(strstr(html, "it's"));
+    assert_null(strstr(html, "nan"));
+    free(html);
+}
+
 static void a_chart_of_one_point_has_axes(void **state)
 {
     (void)state;
     weft_page page;
     const double point[][2] = {{0, 0}};
-    const weft_chart_series series = {NULL, 0, true, 1, point};
+    const weft_chart_series series = {NULL, 0, WEFT_CHART_LINE, 1, point, NULL};
     const weft_chart chart = {"One", {"stay", "", 0, 0, 1}, {"y", "", 0, 0, 0}, 1, &series};
     assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
     weft_chart_write(&page, &chart);
@@ -128,7 +158,8 @@ static void a_chart_of_nothing_is_not_drawn(void **state)
     (void)state;
     weft_page page;
     const double nowhere[][2] = {{NAN, 1}, {1, INFINITY}};
-    const weft_chart_series series[] = {{"none", 0, true, 2, nowhere}, {"empty", 0, false, 0, NULL}};
+    const weft_chart_series series[] = {{"none", 0, WEFT_CHART_LINE, 2, nowhere, NULL},
+                                        {"empty", 0, WEFT_CHART_POINTS, 0, NULL, NULL}};
     const weft_chart chart = {"Nothing", {"x", "", 0, 1, 0}, {"y", "", 0, 1, 0}, 2, series};
     assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
     weft_chart_write(&page, &chart);
@@ -153,6 +184,7 @@ int main(void)
         cmocka_unit_test(a_picture_lies_beside_the_page_under_its_caption),
         cmocka_unit_test(headings_of_columns_say_that_they_are),
         cmocka_unit_test(a_chart_has_its_points_where_its_ticks_say),
+        cmocka_unit_test(points_lie_on_logarithmic_axes),
         cmocka_unit_test(a_chart_of_one_point_has_axes),
         cmocka_unit_test(a_chart_of_nothing_is_not_drawn),
         cmocka_unit_test(a_page_that_is_given_up_leaves_no_file),

@@ -16,7 +16,7 @@ cp knit.btf.h5 before.btf.h5
 export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent
 expect_ok tradeoff knit.btf.h5 --weave "$assets/microcylinder/crepe.mc" -o prices
 cmp -s knit.btf.h5 before.btf.h5 || fail "the dataset is changed"
-for model in "diffuse" "1 lobe" "diffuse, T" "32 layers" "analytic cloth" "the photographs, interpolated"; do
+for model in "1 lobe" "2 lobes" "32 components" "analytic cloth" "the photographs, interpolated"; do
     grep -q "^$model  *[0-9]" out.log || fail "there is no price of $model: $(cat out.log)"
 done
 expect_page prices
@@ -26,7 +26,7 @@ done
 grep -q 'id="looks"' prices/index.html || fail "the page does not say how alike pictures look"
 grep -q "no times of frames: " out.log || fail "it does not say why there are no times of frames"
 grep -q "There are no times of frames: " prices/index.html || fail "the page does not say why there are none"
-[ "$(grep -c '<svg class="plot wide"' prices/index.html)" = 2 ] || fail "there are not two plots: of size and of the fit"
+[ "$(grep -c '<svg class="plot"' prices/index.html)" = 2 ] || fail "there are not two plots: of size and of the fit"
 if ls prices | grep -v '^index.html$\|^tradeoff.csv$\|^model-[0-9]*\(-photograph\)\?.png$'; then
     fail "something is left behind"
 fi
@@ -35,9 +35,9 @@ import csv
 rows = list(csv.DictReader(open("prices/tradeoff.csv")))
 by_name = {row["model"]: row for row in rows}
 assert len(by_name) == len(rows) > 8
-raw, diffuse = by_name["the photographs; interpolated"], by_name["diffuse"]
+raw, lobe = by_name["the photographs; interpolated"], by_name["1 lobe"]
 assert float(raw["bytes"]) == 8 * 8 * 49 * 6 and raw["photographs"] == "49", raw
-assert 500 < float(diffuse["bytes"]) < 20000 and diffuse["options"] == "--lobes 0 --table off", diffuse
+assert 500 < float(lobe["bytes"]) < 20000 and lobe["options"] == "--lobes 1", lobe
 for row in rows:
     most = 9 if row["model"] == "analytic cloth" else 2
     assert 0 < float(row["not_fitted_all_relative_rmse"]) < most and 0 <= float(row["flip"]) < 1, row
@@ -64,7 +64,7 @@ awk 'BEGIN {
 expect_ok simulate "$assets/stitches/plain_knit.stitch" -o wide.btf.h5 --plane top --heights off --size 26x4 --noise 10 --bounces 0 \
     --resolution 20 --directions ten.csv --seed 3
 expect_says "times, on 96 of 104 texels, lobes on 64:" tradeoff wide.btf.h5 -o wide
-for options in "--lobes 1 --table off" "--components 8"; do
+for options in "--lobes 1" "--components 8 --rounding on"; do
     # shellcheck disable=SC2086
     expect_ok compress wide.btf.h5 -o wide.weft $options --json
     cp out.log events.log

@@ -2,8 +2,6 @@
 #include "tests/compare/fixture.h"
 
 #include "base/atomic_file.h"
-#include "compare/tradeoff/label_place.h"
-#include "compare/tradeoff/plot.h"
 #include "compare/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -114,99 +112,6 @@ static void frames_that_are_too_slow_are_not_chosen(void **state)
     }
 }
 
-/* ---- Plots ---- */
-
-static int find_discs(const char *svg, double x[], double y[], int most)
-{
-    int count = 0;
-    for (const char *at = svg; (at = strstr(at, "<circle cx=\"")) && count < most; at++, count++)
-        assert_int_equal(sscanf(at, "<circle cx=\"%lf\" cy=\"%lf\"", &x[count], &y[count]), 2);
-    return count;
-}
-
-static void points_lie_on_logarithmic_axes(void **state)
-{
-    (void)state;
-    const weft_plot_point point[] = {{1, 100, 1, 0, "first & <last>", NULL, "a", false, true},
-                                     {10, 10, 2, 1, "b", NULL, "b", false, true},
-                                     {100, 1, 3, 2, "c", "c.png", "c", true, true},
-                                     {0, 5, 4, 2, "absent", NULL, "d", false, false}};
-    const weft_plot plot = {"title", "x", "y", 4, point};
-    weft_page page;
-    weft_error error = {0};
-    double x[4], y[4];
-    expect_ok(weft_page_begin("tradeoff-plot", "plot", &page, &error), &error);
-    expect_ok(weft_plot_write(&page, &plot, &error), &error);
-    fflush(page.html);
-    assert_int_equal(find_discs(page.bytes, x, y, 4), 3);
-    assert_float_equal(x[1], (x[0] + x[2]) / 2, 0.11);
-    assert_float_equal(y[1], (y[0] + y[2]) / 2, 0.11);
-    assert_true(x[0] > 60 && x[2] > x[0] + 400 && x[2] < 745);
-    assert_true(y[0] > 30 && y[2] > y[0] + 250 && y[2] < 390);
-    assert_non_null(strstr(page.bytes, "first &amp; &lt;last&gt;"));
-    assert_null(strstr(page.bytes, "absent"));
-    assert_non_null(strstr(page.bytes, "href=\"c.png\""));
-    weft_page_abandon(&page);
-    rmdir("tradeoff-plot");
-}
-
-/* Three points at nearly the same place, on the right of the plot: the first label stands below its point and ends
- * there, and none lies on another, on a ring or beyond the rim. */
-static void labels_do_not_lie_on_each_other(void **state)
-{
-    (void)state;
-    enum { POINTS = 3, BOXES = 2 * POINTS, WIDTH = 760, HEIGHT = 382, LETTERS = 30 };
-    static const double at[POINTS][2] = {{700, 360}, {690, 368}, {705, 372}};
-    weft_label_box box[BOXES];
-    size_t count = 0;
-    for (; count < POINTS; count++)
-        box[count] = (weft_label_box){at[count][0] - 13, at[count][1] - 13, at[count][0] + 13, at[count][1] + 13};
-    for (int i = 0; i < POINTS; i++) {
-        const weft_label_obstacles taken = {.taken = box, .taken_count = count};
-        weft_label_place place = weft_label_place_choose(at[i][0], at[i][1], 9, LETTERS, WIDTH, HEIGHT, &taken);
-        assert_true(place.box.left >= 0 && place.box.right <= WIDTH && place.box.top >= 0 &&
-                    place.box.bottom <= HEIGHT);
-        assert_true(place.ends_there);
-        box[count++] = place.box;
-    }
-    for (size_t i = POINTS; i < BOXES; i++)
-        for (size_t j = 0; j < i; j++)
-            assert_true(box[i].right <= box[j].left || box[j].right <= box[i].left || box[i].bottom <= box[j].top ||
-                        box[j].bottom <= box[i].top);
-    const weft_label_obstacles none = {0};
-    weft_label_place alone = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, &none);
-    assert_false(alone.ends_there);
-    assert_true(alone.y > 100 && alone.x > 100);
-}
-
-static bool lies_on(const weft_label_box *a, const weft_label_box *b)
-{
-    return a->left < b->right && b->left < a->right && a->top < b->bottom && b->top < a->bottom;
-}
-
-/* Discs are below and above on the near side: the label goes where there is none. Where they are everywhere it lies on
- * one rather than on two, and still on no other label. */
-static void labels_avoid_discs_where_there_is_room(void **state)
-{
-    (void)state;
-    enum { WIDTH = 760, HEIGHT = 382, LETTERS = 20, ROWS = 26, LOWER = 150 };
-    const weft_label_box near[2] = {{150, 110, 168, 128}, {190, 80, 208, 98}};
-    const weft_label_obstacles some = {.disc = near, .disc_count = 2};
-    weft_label_place place = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, &some);
-    assert_false(lies_on(&place.box, &near[0]) || lies_on(&place.box, &near[1]));
-    weft_label_box everywhere[2 * ROWS];
-    for (int i = 0; i < ROWS; i++) { /* a column in all rows of text, and another one in the upper ones */
-        double right = 15 * i < LOWER ? 180 : 500;
-        everywhere[2 * i] = (weft_label_box){150, 15 * i, 168, 15 * i + 15};
-        everywhere[2 * i + 1] = (weft_label_box){right, 15 * i, right + 18, 15 * i + 15};
-    }
-    const weft_label_obstacles all = {
-        .taken = &near[0], .taken_count = 1, .disc = everywhere, .disc_count = sizeof everywhere / sizeof *everywhere};
-    place = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, &all);
-    assert_true(place.box.top >= LOWER);
-    assert_false(lies_on(&place.box, &near[0]));
-}
-
 /* ---- The page ---- */
 
 static int count_of(const char *text, const char *word)
@@ -247,9 +152,6 @@ int main(void)
         cmocka_unit_test(a_hundredth_is_not_worth_any_bytes),
         cmocka_unit_test(nothing_is_chosen_of_nothing),
         cmocka_unit_test(frames_that_are_too_slow_are_not_chosen),
-        cmocka_unit_test(points_lie_on_logarithmic_axes),
-        cmocka_unit_test(labels_do_not_lie_on_each_other),
-        cmocka_unit_test(labels_avoid_discs_where_there_is_room),
         cmocka_unit_test(page_names_a_chosen_model_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,10 +6,8 @@
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "compare/tradeoff/frame_timer.h"
-#include "compare/tradeoff/plot.h"
 #include "compare/tradeoff/preset.h"
 #include "compare/tradeoff/tradeoff.h"
-#include "compare/tradeoff/variant.h"
 #include "compress/compress.h"
 #include "compress/hold_out/hold_out.h"
 #include "compress/run/memory.h"
@@ -62,15 +60,10 @@ static void the_list_has_what_the_photographs_carry(void **state)
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_dataset_layout full = grid_layout(DIRECTIONS), few = grid_layout(7);
     int count = weft_priced_models_list(&full, &flat, model);
-    assert_in_range(count, 25, WEFT_PRICED_MOST);
-    static const char *const wanted[] = {"diffuse",
+    assert_in_range(count, 15, WEFT_PRICED_MOST);
+    static const char *const wanted[] = {"1 lobe",
                                          "3 lobes",
-                                         "diffuse, T",
-                                         "2 lobes, T",
-                                         "2 lobes, T in 4 bits",
-                                         "2 lobes, T, S",
                                          "64 components",
-                                         "64 components, rounded",
                                          "16 components over the light",
                                          "16 components over the half vector",
                                          "32 components, 21 views",
@@ -80,15 +73,12 @@ static void the_list_has_what_the_photographs_carry(void **state)
     for (int i = 0; i < count; i++) {
         for (int j = 0; j < i; j++)
             assert_string_not_equal(model[i].name, model[j].name);
-        if (model[i].table_bits > 0 || model[i].first_components > 0 || model[i].fewer_texels ||
-            model[i].options.rounded)
-            assert_true(weft_priced_models_share_fit(&model[i], &model[i - 1]));
     }
-    assert_false(weft_priced_models_share_fit(find(model, count, "1 lobe"), find(model, count, "1 lobe, T")));
-    assert_string_equal(find(model, count, "16 components, rounded")->arguments, "--components 16 --rounding on");
+    assert_false(weft_priced_models_share_fit(find(model, count, "1 lobe"), find(model, count, "2 lobes")));
+    assert_string_equal(find(model, count, "2 lobes")->arguments, "--lobes 2");
+    assert_non_null(strstr(find(model, count, "16 components")->arguments, "--components 16"));
     count = weft_priced_models_list(&few, &flat, model);
     assert_non_null(find(model, count, "2 lobes"));
-    assert_null(find(model, count, "2 lobes, T"));
     assert_null(find(model, count, "3 lobes"));
     assert_null(find(model, count, "32 components, 21 views"));
     weft_dataset_layout_free(&full);
@@ -252,14 +242,14 @@ static weft_held_error measure(weft_held_bench *bench, const char *name)
     return measured;
 }
 
-/* A diffuse term that saw 0.3 alone misses half of 0.6. Nothing else is as bright, and nothing held out leaks. */
+/* A lobe that saw 0.3 alone misses half of 0.6. Nothing else is as bright, and nothing held out leaks. */
 static void errors_are_told_apart_where_eyes_look(void **state)
 {
     (void)state;
     weft_dataset *dataset;
     write_grid(2, spoilt);
     weft_held_bench *bench = open_bench(&dataset);
-    weft_held_error m = measure(bench, "diffuse");
+    weft_held_error m = measure(bench, "1 lobe");
     assert_int_equal(m.held[WEFT_SAMPLES_ALL].count, 3 * 4 * count_held(false));
     assert_int_equal(m.held[WEFT_SAMPLES_GRAZING].count, 3 * 4 * count_held(true));
     assert_float_equal(m.held[WEFT_SAMPLES_GRAZING].relative_rmse, 0.5, 0.002);
@@ -283,31 +273,7 @@ static void errors_are_told_apart_where_eyes_look(void **state)
     forget_grid();
 }
 
-/* Rounded tables, and half of the texels, come from the fit of the model before. */
-static void variants_are_made_of_the_same_fit(void **state)
-{
-    (void)state;
-    weft_dataset *dataset;
-    write_grid(4, rough);
-    weft_held_bench *bench = open_bench(&dataset);
-    weft_held_error whole = measure(bench, "2 lobes, T"), rounded = measure(bench, "2 lobes, T in 4 bits"),
-                    coarse = measure(bench, "2 lobes, T, half the texels a side"), other = measure(bench, "diffuse");
-    assert_true(rounded.fit_s <= whole.fit_s && rounded.fit_s >= whole.fit_s);
-    assert_true(coarse.fit_s <= whole.fit_s && coarse.fit_s >= whole.fit_s);
-    assert_true(rounded.fitted[0].relative_rmse > 1.01 * whole.fitted[0].relative_rmse);
-    assert_true(rounded.fitted[0].relative_rmse < 0.1);
-    assert_true(coarse.fitted[0].relative_rmse > 0.2 && coarse.fitted[0].relative_rmse < 0.6);
-    assert_true(other.fit_s < whole.fit_s || other.fit_s > whole.fit_s);
-    weft_held_error_free(&whole);
-    weft_held_error_free(&rounded);
-    weft_held_error_free(&coarse);
-    weft_held_error_free(&other);
-    weft_held_bench_free(bench);
-    weft_dataset_close(dataset);
-    forget_grid();
-}
-
-/* The pictures of a bench that is asked for these alone: the same, by the same fit, and fewer texels after it. */
+/* The pictures of a bench that is asked for these alone: the same, by the same fit. */
 static void pictures_alone_are_those_beside_errors(void **state)
 {
     (void)state;
@@ -318,9 +284,8 @@ static void pictures_alone_are_those_beside_errors(void **state)
     write_grid(4, rough);
     weft_held_bench *bench = open_bench(&dataset), *other = open_bench(&again);
     int count = weft_priced_models_list(&grid, &flat, model);
-    expect_ok(weft_held_bench_picture(bench, find(model, count, "2 lobes, T"), &alone, &error), &error);
-    weft_held_error coarse = measure(bench, "2 lobes, T, half the texels a side"), both = measure(other, "2 lobes, T"),
-                    coarse_of_both = measure(other, "2 lobes, T, half the texels a side");
+    expect_ok(weft_held_bench_picture(bench, find(model, count, "2 lobes"), &alone, &error), &error);
+    weft_held_error both = measure(other, "2 lobes");
     size_t bytes = 3 * (size_t)both.sample.width * (size_t)both.sample.height * sizeof *both.sample.pixels;
     assert_int_equal(alone.held[0].count, 0);
     assert_int_equal(alone.picture_count, both.picture_count);
@@ -329,11 +294,8 @@ static void pictures_alone_are_those_beside_errors(void **state)
     assert_int_equal(alone.worst_image, both.worst_image);
     assert_memory_equal(alone.sample.pixels, both.sample.pixels, bytes);
     assert_memory_equal(alone.predicted.pixels, both.predicted.pixels, bytes);
-    assert_memory_equal(coarse.held, coarse_of_both.held, sizeof coarse.held);
     weft_held_error_free(&alone);
     weft_held_error_free(&both);
-    weft_held_error_free(&coarse);
-    weft_held_error_free(&coarse_of_both);
     weft_held_bench_free(bench);
     weft_held_bench_free(other);
     weft_dataset_close(dataset);
@@ -341,48 +303,13 @@ static void pictures_alone_are_those_beside_errors(void **state)
     forget_grid();
 }
 
-/* One brightness a texel under one reflectance is rank 1: two components say all of it. Of as many colours as texels
- * they say less than four. */
-static weft_rgb tinted(int x, int y, weft_vec3 light, weft_vec3 view)
-{
-    weft_rgb value = rough(0, 0, light, view);
-    double a = x % 2, b = y % 2, c = (x / 2 + y / 2) % 2;
-    return (weft_rgb){value.r * (0.2 + a * (double)light.x * (double)light.x),
-                      value.g * (0.2 + b * (double)view.y * (double)view.y), value.b * (0.2 + c * (double)light.z)};
-}
-
-static void two_layers_are_the_first_of_four(void **state)
-{
-    (void)state;
-    const char *const names[] = {"4 components", "2 components, the first of 4"};
-    double error[2][2];
-    for (int colours = 0; colours < 2; colours++) {
-        weft_dataset *dataset;
-        write_grid(4, colours ? tinted : rough);
-        weft_held_bench *bench = open_bench(&dataset);
-        for (int i = 0; i < 2; i++) {
-            weft_held_error measured = measure(bench, names[i]);
-            error[colours][i] = measured.fitted[0].relative_rmse;
-            weft_held_error_free(&measured);
-        }
-        print_message("4 components %.4f, 2 of them %.4f\n", error[colours][0], error[colours][1]);
-        weft_held_bench_free(bench);
-        weft_dataset_close(dataset);
-        forget_grid();
-    }
-    assert_true(error[0][1] < 1.1 * error[0][0] + 0.01);
-    assert_true(error[1][1] > 1.3 * error[1][0] && error[1][1] < 0.8);
-}
-
 /* ---- Prices ---- */
 
 static weft_price ask(weft_price_shop *shop, const weft_priced_model *model)
 {
     weft_price price;
-    bool has_parts;
     weft_error error = {0};
-    expect_ok(weft_price_ask(shop, model, &price, &has_parts, &error), &error);
-    assert_true(has_parts);
+    expect_ok(weft_price_ask(shop, model, &price, &error), &error);
     return price;
 }
 
@@ -391,15 +318,15 @@ static void bytes_are_those_of_the_file(void **state)
 {
     (void)state;
     weft_dataset *dataset;
-    weft_price_shop *whole, *part, *small;
+    weft_price_shop *whole, *part;
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_material material;
     weft_error error = {0};
     fixture_far_dataset(path, 24, 24, 4, rough, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
-    const weft_priced_model *wanted = find(model, count, "1 lobe, T");
-    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){64, 64}, scratch, NULL, &whole, &error), &error);
+    const weft_priced_model *wanted = find(model, count, "1 lobe");
+    expect_ok(weft_price_shop_open(dataset, 64, scratch, NULL, &whole, &error), &error);
     weft_price price = ask(whole, wanted);
     expect_ok(weft_compress(dataset, &wanted->options, NULL, &material, NULL, &error), &error);
     expect_ok(weft_material_write("tradeoff.weft", &material, &error), &error);
@@ -409,15 +336,9 @@ static void bytes_are_those_of_the_file(void **state)
     assert_true(price.evaluations_a_second > 100);
     assert_int_equal(price.fetches.reads, 8 * (1 + 2 + 3));
     assert_true((price.frame_ms > 0) != (weft_price_shop_why_not_drawn(whole)[0] != 0));
-    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){20, 16}, scratch, NULL, &part, &error), &error);
-    assert_int_equal(weft_price_shop_texels(part, false), 20 * 20);
-    assert_int_equal(weft_price_shop_texels(part, true), 16 * 16);
+    expect_ok(weft_price_shop_open(dataset, 20, scratch, NULL, &part, &error), &error);
+    assert_int_equal(weft_price_shop_texels(part), 20 * 20);
     assert_float_equal(ask(part, wanted).bytes, price.bytes, 0.15 * price.bytes);
-    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){16, 20}, scratch, NULL, &small, &error), &error);
-    const weft_priced_model *costly = find(model, count, "2 lobes, T by 4 components");
-    assert_true(ask(part, wanted).bytes < ask(small, wanted).bytes);
-    assert_true(ask(part, costly).bytes > ask(small, costly).bytes);
-    weft_price_shop_close(small);
     weft_price_shop_close(whole);
     weft_price_shop_close(part);
     weft_material_free(&material);
@@ -427,94 +348,6 @@ static void bytes_are_those_of_the_file(void **state)
     assert_int_not_equal(access(scratch, F_OK), 0);
 }
 
-/* What differs in its numbers alone takes as long to draw; half of the texels are drawn by themselves. */
-static void rounded_numbers_are_drawn_once(void **state)
-{
-    (void)state;
-    weft_dataset *dataset;
-    weft_price_shop *shop;
-    weft_priced_model model[WEFT_PRICED_MOST];
-    weft_error error = {0};
-    fixture_far_dataset(path, 8, 8, 4, rough, FIXTURE_MASK_NONE);
-    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
-    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){8, 8}, scratch, NULL, &shop, &error), &error);
-    bool draws = weft_price_shop_why_not_drawn(shop)[0] == 0;
-    weft_price exact = ask(shop, find(model, count, "2 lobes, T")),
-               rounded = ask(shop, find(model, count, "2 lobes, T in 4 bits")),
-               coarse = ask(shop, find(model, count, "2 lobes, T, half the texels a side")),
-               other = ask(shop, find(model, count, "4 components"));
-    assert_memory_equal(&rounded.frame_ms, &exact.frame_ms, sizeof exact.frame_ms);
-    assert_memory_equal(&rounded.large_frame_ms, &exact.large_frame_ms, sizeof exact.large_frame_ms);
-    if (draws) {
-        assert_memory_not_equal(&coarse.large_frame_ms, &exact.large_frame_ms, sizeof exact.large_frame_ms);
-        assert_memory_not_equal(&other.large_frame_ms, &coarse.large_frame_ms, sizeof coarse.large_frame_ms);
-    }
-    weft_price_shop_close(shop);
-    weft_dataset_close(dataset);
-    unlink(path);
-}
-
-/* ---- Rounded components ---- */
-
-/* Nobody can predict more than a fifth of it. */
-static weft_rgb noisy(int x, int y, weft_vec3 light, weft_vec3 view)
-{
-    double noise =
-        sin(127.1 * light.x + 311.7 * light.y + 74.7 * view.x + 269.5 * view.y + 3.3 * x + 7.9 * y) * 43758.5453;
-    double factor = 0.7 + 0.6 * (noise - floor(noise));
-    weft_rgb value = rough(x, y, light, view);
-    return (weft_rgb){factor * value.r, factor * value.g, factor * value.b};
-}
-
-static void expect_same_components(const weft_components *a, const weft_components *b)
-{
-    assert_memory_equal(a->value, b->value, 3 * (size_t)a->image_count * (size_t)a->component_count * sizeof *a->value);
-    assert_memory_equal(a->scale, b->scale, (size_t)a->component_count * sizeof *a->scale);
-    for (int k = 0; k < a->level_count; k++)
-        assert_memory_equal(a->level[k].coefficient, b->level[k].coefficient,
-                            (size_t)a->level[k].width * (size_t)a->level[k].height * (size_t)a->component_count);
-}
-
-/* A row of rounded components is made of the fit of exact ones, and is what weft compress --rounding on makes. */
-static void rounded_layers_are_those_of_the_command(void **state)
-{
-    (void)state;
-    weft_dataset *dataset;
-    weft_price_shop *shop;
-    weft_priced_model model[WEFT_PRICED_MOST];
-    weft_material fitted, made, variant;
-    weft_compress_report report;
-    weft_error error = {0};
-    fixture_far_dataset(path, 16, 12, 4, noisy, FIXTURE_MASK_NONE);
-    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
-    const weft_priced_model *exact = find(model, count, "8 components"),
-                            *rounded = find(model, count, "8 components, rounded");
-    expect_ok(weft_compress(dataset, &exact->options, NULL, &fitted, &report, &error), &error);
-    expect_ok(weft_compress(dataset, &rounded->options, NULL, &made, NULL, &error), &error);
-    expect_ok(weft_variant_make(&fitted, rounded, report.components.rounding_step, "variant.weft", &variant, &error),
-              &error);
-    assert_true(weft_components_have_differences(variant.components));
-    expect_same_components(variant.components, made.components);
-    expect_ok(weft_material_write("tradeoff.weft", &made, &error), &error);
-    double bytes = (double)weft_file_bytes("tradeoff.weft");
-    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){64, 64}, scratch, NULL, &shop, &error), &error);
-    weft_price of_exact = ask(shop, exact), of_rounded = ask(shop, rounded);
-    print_message("%.0f bytes, rounded %.0f, as the command makes it %.0f\n", of_exact.bytes, of_rounded.bytes, bytes);
-    assert_true(of_rounded.fit_s <= of_exact.fit_s && of_rounded.fit_s >= of_exact.fit_s);
-    assert_float_equal(of_rounded.bytes, bytes, 128); /* other digits of the error in the metadata */
-    assert_true(of_rounded.bytes < 0.7 * of_exact.bytes);
-    assert_int_equal(of_rounded.fetches.reads, of_exact.fetches.reads);
-    weft_price_shop_close(shop);
-    weft_material_free(&fitted);
-    weft_material_free(&made);
-    weft_material_free(&variant);
-    weft_dataset_close(dataset);
-    unlink("tradeoff.weft");
-    unlink(path);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -522,12 +355,8 @@ int main(void)
         cmocka_unit_test(maps_are_of_the_kind_asked_for),
         cmocka_unit_test(fewer_photographs_are_spread),
         cmocka_unit_test(errors_are_told_apart_where_eyes_look),
-        cmocka_unit_test(variants_are_made_of_the_same_fit),
         cmocka_unit_test(pictures_alone_are_those_beside_errors),
-        cmocka_unit_test(two_layers_are_the_first_of_four),
         cmocka_unit_test(bytes_are_those_of_the_file),
-        cmocka_unit_test(rounded_numbers_are_drawn_once),
-        cmocka_unit_test(rounded_layers_are_those_of_the_command),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -204,8 +204,8 @@ static void draw_rings(weft_page *page, const weft_comparison *comparison, bool 
             point[m][i][0] = 15 * i;
             point[m][i][1] = ring[i].count > 0 ? 100 * ring[i].relative_rmse : NAN;
         }
-        series[m] =
-            (weft_chart_series){comparison->model[m].name, m, true, WEFT_RING_COUNT, (const double(*)[2])point[m]};
+        series[m] = (weft_chart_series){comparison->model[m].name,    m,   WEFT_CHART_LINE, WEFT_RING_COUNT,
+                                        (const double(*)[2])point[m], NULL};
     }
     weft_chart chart = {of_light ? "Error by light" : "Error by view",
                         {of_light ? "light from the normal" : "view from the normal", "\u00b0", 0, 75, 0},

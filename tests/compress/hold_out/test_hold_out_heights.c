@@ -299,12 +299,11 @@ static void prices_are_of_what_is_played(void **state)
     expect_ok(
         weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, 20, (weft_splits_asked){0, 1}, scratch, &bench, &error),
         &error);
-    weft_held_error diffuse = ask(bench, dataset, "diffuse"),
-                    flat = ask(bench, dataset, "8 components, without heights"),
+    weft_held_error lobe = ask(bench, dataset, "1 lobe"), flat = ask(bench, dataset, "8 components, without heights"),
                     through = ask(bench, dataset, "8 components, through heights"),
                     raw_flat = ask(bench, dataset, "the photographs, without heights"),
                     raw = ask(bench, dataset, "the photographs, through heights");
-    assert_true(raw.held[0].count > 0 && diffuse.held[0].count == raw.held[0].count);
+    assert_true(raw.held[0].count > 0 && lobe.held[0].count == raw.held[0].count);
     assert_true(flat.held[0].count == raw.held[0].count && through.held[0].count > 9 * raw.held[0].count / 10);
     assert_true(raw_flat.held[0].count == raw.held[0].count);
     assert_true(error_of(&through) < 0.92 * error_of(&flat) && error_of(&raw) < 0.3 * error_of(&raw_flat));
@@ -321,10 +320,9 @@ static double priced_bytes(weft_dataset *dataset, const weft_priced_model *model
 {
     weft_price_shop *shop;
     weft_price price;
-    bool has_parts;
     weft_error error = {0};
-    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){side, side}, scratch, NULL, &shop, &error), &error);
-    expect_ok(weft_price_ask(shop, model, &price, &has_parts, &error), &error);
+    expect_ok(weft_price_shop_open(dataset, side, scratch, NULL, &shop, &error), &error);
+    expect_ok(weft_price_ask(shop, model, &price, &error), &error);
     weft_price_shop_close(shop);
     return price.bytes;
 }
