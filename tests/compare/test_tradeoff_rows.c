@@ -58,7 +58,7 @@ static void the_list_ends_with_what_is_no_fit(void **state)
     }
     assert_true(weft_priced_model_is_fit(find(model, count, "4 components")));
     assert_non_null(find(model, count, "32 components, every third ring"));
-    assert_in_range(weft_priced_models_list(&full, &with_all, model), 35, WEFT_PRICED_MOST - 1);
+    assert_in_range(weft_priced_models_list(&full, &with_all, model), 25, WEFT_PRICED_MOST - 1);
     assert_null(find(model, weft_priced_models_list(&full, &without, model), "analytic cloth"));
     assert_null(find(model, weft_priced_models_list(&few, &without, model), "BARD from one light"));
     weft_dataset_layout_free(&full);
