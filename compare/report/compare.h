@@ -1,4 +1,4 @@
-/* Dataset, material, analytic cloth and BARD side by side: one HTML page (docs/reference/compare-report.md). */
+/* Dataset, material, analytic cloth and BARD side by side: one HTML page (docs/guide/compare.md). */
 #ifndef WEFT_COMPARE_REPORT_COMPARE_H
 #define WEFT_COMPARE_REPORT_COMPARE_H
 
