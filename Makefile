@@ -1,22 +1,28 @@
 # Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
 build := build/release
+jobs := $(shell expr $$(nproc) + 1)
 
 # Where `make install` puts the program; DESTDIR stages it.
 PREFIX ?= /usr/local
 
-.PHONY: demo test program build install uninstall package check mutants bench numerics references packages clean
+.PHONY: demo test test-all program build install uninstall package check mutants bench numerics references packages clean
 
 demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
 
+# Every behaviour once.
 test: build
-	OMP_WAIT_POLICY=passive ctest --test-dir $(build) --output-on-failure -j $(shell expr $$(nproc) + 1)
+	ctest --preset test -j $(jobs)
+
+# The long tests, too: short memory at every step, more fuzzing, torture, extremes by the million.
+test-all: build
+	ctest --preset test-all -j $(jobs)
 
 build: program
 	cmake --build --preset release
 
 program: packages
-	cmake --preset release -Wno-dev --log-level=WARNING
+	cmake --preset release -Wno-dev --log-level=WARNING $(if $(WEFT_SHARED),-DWEFT_SHARED=$(WEFT_SHARED))
 	cmake --build --preset release --target weft
 
 install: program

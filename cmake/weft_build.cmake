@@ -17,7 +17,7 @@ set_property(CACHE WEFT_SANITIZE PROPERTY STRINGS "" address thread)
 add_library(weft_options INTERFACE)
 target_compile_definitions(weft_options INTERFACE _GNU_SOURCE WEFT_VERSION="${PROJECT_VERSION}")
 target_compile_options(weft_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wvla -Werror
-    $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes> -fno-math-errno)
+    $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> $<$<AND:$<COMPILE_LANGUAGE:C>,$<NOT:$<BOOL:$<TARGET_PROPERTY:WEFT_HAS_SUITES>>>>:-Wmissing-prototypes> -fno-math-errno)
 target_link_libraries(weft_options INTERFACE m)
 # Where it is there, gold links the two hundred programs of the tests in half the time.
 include(CheckLinkerFlag)
@@ -142,33 +142,4 @@ function(weft_plugin name folder)
     # The table of functions that the library looks up is all that a plugin shows.
     set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${WEFT_PLUGINS} C_VISIBILITY_PRESET default CXX_VISIBILITY_PRESET default)
     add_dependencies(weft_plugins ${name})
-endfunction()
-
-# ---- Tests ----
-
-# weft_test(NAME SOURCES file... LINKS target... [LABELS label...]): a cmocka program run by ctest.
-function(weft_test name)
-    cmake_parse_arguments(test "" "" "SOURCES;LINKS;LABELS" ${ARGN})
-    add_executable(test_${name} ${test_SOURCES})
-    target_link_libraries(test_${name} PRIVATE ${test_LINKS} cmocka)
-    # The pure functions in another precision are a library of their own.
-    if(NOT "weft_single_precision" IN_LIST test_LINKS)
-        target_link_libraries(test_${name} PRIVATE weft_static)
-    endif()
-    add_dependencies(test_${name} weft_plugins)
-    target_compile_definitions(test_${name} PRIVATE
-        WEFT_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data" WEFT_ASSETS="${CMAKE_SOURCE_DIR}/assets"
-        WEFT_SHARED="${CMAKE_SOURCE_DIR}/../shared")
-    add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
-    set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS "${test_LABELS}")
-endfunction()
-
-# weft_threads_test(NAME...): tests, of weft_test, of what starts threads of its own. They also run under ThreadSanitizer
-# (preset tsan), whose build needs no more than the target threads_tests.
-add_custom_target(threads_tests)
-function(weft_threads_test)
-    foreach(name ${ARGN})
-        set_property(TEST ${name} APPEND PROPERTY LABELS threads)
-        add_dependencies(threads_tests test_${name})
-    endforeach()
 endfunction()

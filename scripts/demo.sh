@@ -6,7 +6,7 @@ weft=$1
 out=$2
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
 weave="$source_dir/assets/weaves/wool_gabardine.wv"
-shared="$source_dir/../shared/real"
+shared=${WEFT_SHARED:+$WEFT_SHARED/real}
 mkdir -p "$out"
 
 step() {
@@ -37,14 +37,14 @@ rm -rf "$out/hand"
 "$weft" tile "$out/hand.weft" --blend -o "$out/hand-tile.weft"
 "$weft" render "$out/hand-tile.weft" -o "$out/hand.png"
 
-if [ -d "$shared/cards-blue" ]; then
+if [ -n "$shared" ] && [ -d "$shared/cards-blue" ]; then
     step "And real photographs: nine flash pictures of a card"
     "$weft" import "$shared/cards-blue" --size 256 -o "$out/cards.btf.h5"
     "$weft" compress "$out/cards.btf.h5" -o "$out/cards.weft"
     "$weft" render "$out/cards.weft" --mesh plane --repeat 1 --light 35,120 --size 800x800 -o "$out/cards-moved-light.png"
     "$weft" compare "$out/cards.btf.h5" "$out/cards.weft" -o "$out/cards-compare"
 else
-    printf '\nNo real photographs beside this clone: that part is skipped.\n'
+    printf '\nWEFT_SHARED names no folder of real photographs: that part is skipped.\n'
 fi
 
 printf '\nDone. Look at:\n'

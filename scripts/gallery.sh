@@ -10,7 +10,7 @@ weft=$(realpath "$1")
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
 pictures="$source_dir/docs/images/gallery"
 page="$source_dir/docs/gallery.md"
-cards="$source_dir/../shared/real/cards-blue"
+cards="${WEFT_SHARED:-/nonexistent}/real/cards-blue"
 work=${2:-$(mktemp -d)}
 [ -n "${2:-}" ] || trap 'rm -rf "$work"' EXIT
 [ $# -lt 2 ] || shift

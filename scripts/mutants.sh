@@ -41,12 +41,11 @@ copy_tree() {
     (cd "$tree" && find . -type f | sed 's|^\./||' | sort) | comm -13 "$work/files" - | while read -r file; do rm "$tree/$file"; done
 }
 
-# Targets of tests: test_NAME, unless the fault names another.
+# The targets of the tests that the faults name.
 targets_of() {
     for fault in "$@"; do
-        target=$(field Builds "$fault")
-        echo "${target:-test_$(field 'Caught by' "$fault")}"
-    done | sort -u
+        sed -n "s/^$(field 'Caught by' "$fault") //p" "$work/targets"
+    done | tr ' ' '\n' | sort -u
 }
 
 build() {
@@ -78,6 +77,7 @@ outcome_of() {
 # Builds and runs all named tests without any fault: only then does a failure tell something. Keeps the seconds of each.
 expect_health() {
     cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -Wno-dev --log-level=WARNING >/dev/null
+    scripts/test_targets.py "$build" >"$work/targets"
     # shellcheck disable=SC2046
     if ! build $(targets_of "$@"); then
         grep -E 'error|ninja:' "$work/log" >&2
@@ -105,7 +105,8 @@ undo() {
 try() {
     change --dry-run <"$1" || { echo "does not apply"; return; }
     change <"$1"
-    if ! build "$(targets_of "$1")"; then
+    # shellcheck disable=SC2046
+    if ! build $(targets_of "$1"); then
         verdict="does not build"
     else
         case $(outcome_of "$(field 'Caught by' "$1")") in

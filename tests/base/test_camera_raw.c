@@ -141,7 +141,7 @@ static void a_raw_file_says_how_long_it_was_exposed(void **state)
     assert_true(exif.is_linear && !exif.is_float);
 }
 
-int main(void)
+int test_camera_raw(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(raw_values_are_linear_and_as_the_sensor_counted),

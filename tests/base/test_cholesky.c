@@ -104,7 +104,7 @@ static void numbers_that_are_not_finite_are_refused(void **state)
     }
 }
 
-int main(void)
+int test_cholesky(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_factor_times_its_transpose_is_the_matrix),

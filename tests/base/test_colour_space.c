@@ -237,7 +237,7 @@ static void what_a_file_says_is_weighed(void **state)
     assert_true(claim.kind == WEFT_CLAIM_NONE && weft_colour_space_is_srgb(&claim.space) && !claim.words[0]);
 }
 
-int main(void)
+int test_colour_space(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_spaces_have_the_matrices_that_are_published),

@@ -148,7 +148,7 @@ static void a_score_that_is_not_seen_is_covered(void **state)
     assert_true(fabs(covered - 0.95) < 0.004);
 }
 
-int main(void)
+int test_conformal(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_rank_counts_the_score_that_is_not_seen),

@@ -82,7 +82,7 @@ static void numbers_that_are_none_are_refused(void **state)
     weft_csv_free(&csv);
 }
 
-int main(void)
+int test_csv(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns_are_found_by_name_and_lines_counted),

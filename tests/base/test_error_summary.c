@@ -114,7 +114,7 @@ static void sums_of_parts_are_those_of_the_whole(void **state)
     assert_float_equal(weft_error_sums_relative_rmse(&one), 0.4, 1e-12);
 }
 
-int main(void)
+int test_error_summary(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_rmse_are_over_all_values),

@@ -241,7 +241,7 @@ static void windows_far_apart_show_black(void **state)
     weft_image_free(&image);
 }
 
-int main(void)
+int test_exr(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(colours_are_found_by_their_names),

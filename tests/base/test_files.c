@@ -269,7 +269,7 @@ static void a_file_is_the_same_under_another_name(void **state)
     assert_false(weft_is_same_file("missing", "missing"));
 }
 
-int main(void)
+int test_files(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_disk_leaves_the_old_file_and_no_other),

@@ -87,7 +87,7 @@ static void denormals_off_change_no_conversion(void **state)
     }
 }
 
-int main(void)
+int test_half(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_half_has_the_value_of_its_definition),

@@ -177,7 +177,7 @@ static void a_page_that_is_given_up_leaves_no_file(void **state)
     assert_int_not_equal(access("given-up/index.html", F_OK), 0);
 }
 
-int main(void)
+int test_html_page(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_in_a_text_is_markup),

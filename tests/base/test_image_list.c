@@ -94,7 +94,7 @@ static void a_folder_without_images_is_described(void **state)
     assert_refused(weft_images_missing("none", &error), &error, "1 of its 3 files are HEIF");
 }
 
-int main(void)
+int test_image_list(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(images_are_listed_by_name_one_folder_deep),

@@ -146,7 +146,7 @@ static void a_table_holds_lamps_views_or_both(void **state)
     assert_refused("d.csv", "file,x,y,z\na.jpg,1,0,up\n", "d.csv:2: 'up' is not a finite number");
 }
 
-int main(void)
+int test_light_list(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_lp_file_of_another_computer_is_read),

@@ -109,7 +109,7 @@ static void faults_are_named(void **state)
     refuse(PAIR, "11,1", "--pair needs two numbers above 0, up to 10, not '11,1'");
 }
 
-int main(void)
+int test_option(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_is_read),

@@ -359,7 +359,7 @@ static void the_same_program_has_the_same_solution_in_every_bit(void **state)
     }
 }
 
-int main(void)
+int test_quadratic_program(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bound_that_was_reached_first_is_let_go_again),

@@ -58,7 +58,7 @@ static void weak_waves_are_noise(void **state)
     assert_int_equal(weft_repeat_first((const double[]){1, 0}, 2), 0);
 }
 
-int main(void)
+int test_repeat(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_of_many_peaks_is_the_period),

@@ -60,7 +60,7 @@ static void what_is_no_number_counts_as_the_largest(void **state)
     assert_true(isnan(weft_quantile_of_floats(same, 5, 1)));
 }
 
-int main(void)
+int test_statistics(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_rank_is_the_nearest_and_a_half_goes_up),

@@ -105,7 +105,7 @@ static void a_sensitivity_that_lies_elsewhere_is_none(void **state)
     }
 }
 
-int main(void)
+int test_tiff_sensitivity(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tiff_says_sensitivity_and_angle_of_view_in_either_byte_order),

@@ -126,7 +126,7 @@ static void vignetting_is_one_on_the_axis_and_falls_outward(void **state)
     assert_true(corner < 1 && corner > 0.99);
 }
 
-int main(void)
+int test_camera(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pose_is_a_rotation_and_puts_the_camera_in_the_view_direction),

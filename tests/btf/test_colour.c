@@ -164,7 +164,7 @@ static void a_bad_file_is_refused_with_its_fault(void **state)
                    "singular");
 }
 
-int main(void)
+int test_colour(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read),

@@ -344,7 +344,7 @@ static void an_abandoned_writer_leaves_nothing(void **state)
     weft_dataset_layout_free(&layout);
 }
 
-int main(void)
+int test_dataset(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_of_any_shape_reads_back_as_written),

@@ -413,7 +413,7 @@ static int enter(void **state)
     return code;
 }
 
-int main(void)
+int test_dataset_damage(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(missing_foreign_and_empty_files_are_refused),

@@ -234,7 +234,7 @@ static int enter(void **state)
     return code;
 }
 
-int main(void)
+int test_dataset_heights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heights_are_kept_beside_everything_else),

@@ -49,7 +49,7 @@ static void angles_and_directions_are_inverse(void **state)
     }
 }
 
-int main(void)
+int test_direction(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ubo81_equals_the_reference_table),

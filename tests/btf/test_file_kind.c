@@ -101,7 +101,7 @@ static void a_file_of_bonn_is_told_what_to_do_with(void **state)
     assert_false(weft_file_is_bonn("."));
 }
 
-int main(void)
+int test_file_kind(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(first_bytes_tell_binary_files),

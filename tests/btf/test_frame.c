@@ -117,7 +117,7 @@ static void an_average_normal_weighs_and_stays_above_the_horizon(void **state)
     assert_true(mean.normal.z == 1 && mean.tangent.x == 1);
 }
 
-int main(void)
+int test_frame(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_survive_coding_to_a_few_hundredths_of_a_degree),

@@ -207,7 +207,7 @@ static void a_bad_file_is_refused_with_its_fault(void **state)
                    "got array");
 }
 
-int main(void)
+int test_lens(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lens_distorts_as_opencv_does),

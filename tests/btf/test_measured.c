@@ -94,7 +94,7 @@ static void metadata_keep_it_and_others_say_nothing(void **state)
     weft_dataset_layout_free(&layout);
 }
 
-int main(void)
+int test_measured(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cone_holds_what_was_measured_and_no_more),

@@ -133,7 +133,7 @@ static void motions_come_back(void **state)
     assert_true(none.rotation[0] == 0 && pose.rotation[0][0] == 1);
 }
 
-int main(void)
+int test_poses(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_are_read_as_they_were_written),

@@ -294,7 +294,7 @@ static void every_cut_of_session_json_is_an_error_that_names_it(void **state)
     free(text);
 }
 
-int main(void)
+int test_session(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(session_survives_the_round_trip),

@@ -287,7 +287,7 @@ static void a_map_without_places_is_zero_and_bad_sides_are_refused(void **state)
                      WEFT_BAD_USAGE);
 }
 
-int main(void)
+int test_square_map(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_paraboloid_is_a_disc_that_touches_the_sides),

@@ -317,7 +317,7 @@ static void bad_directions_are_refused_with_their_number(void **state)
     weft_triangulation_free(triangulation);
 }
 
-int main(void)
+int test_triangulation(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_reference_row_is_reproduced),

@@ -379,7 +379,7 @@ static void a_pose_out_of_reach_is_refused_before_anything_is_written(void **sta
     assert_int_equal(scratch_folder_entries(), 1); /* the plan */
 }
 
-int main(void)
+int test_any_rig(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_session_remembers_what_the_rig_says_of_itself),

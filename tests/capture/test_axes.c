@@ -193,7 +193,7 @@ static void axes_turn_together_or_one_after_another_and_settle_once(void **state
     assert_float_equal(weft_axes_move_s(&axes, &to, &to), 0, 0);
 }
 
-int main(void)
+int test_axes(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pair_of_ubo81_stands_where_it_should),

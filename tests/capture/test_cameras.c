@@ -304,7 +304,7 @@ static int enter(void **state)
     return mkdir("incoming", 0777);
 }
 
-int main(void)
+int test_cameras(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_next_file_is_the_frame_and_says_its_exposure),

@@ -104,7 +104,7 @@ static void tiles_of_a_stitch_cannot_be_chosen(void **state)
     assert_non_null(strstr(error.message, "tiles_x and tiles_y must be 0"));
 }
 
-int main(void)
+int test_depth(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_photograph_of_the_cloth_is_as_bright_as_the_truth_says),

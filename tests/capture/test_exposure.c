@@ -102,7 +102,7 @@ static void an_exposure_settles_from_any_start(void **state)
     }
 }
 
-int main(void)
+int test_exposure(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_meter_reads_opening_and_white_patches_against_their_aims),

@@ -241,7 +241,7 @@ static void a_push_is_counted_also_when_the_axis_comes_back(void **state)
     assert_in_range(reply.position[2], 19998, 20002);
 }
 
-int main(void)
+int test_firmware(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reports_come_out_as_they_went_in),

@@ -193,7 +193,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
+int test_lamps(void)
 {
     const char *preloaded = getenv("LD_PRELOAD");
     if (!preloaded || !strstr(preloaded, "umockdev")) {

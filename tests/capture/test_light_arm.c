@@ -204,7 +204,7 @@ static void turns_of_the_arm_are_normal_and_new_for_every_move(void **state)
         assert_true(fabs(weft_deg_of_rad(sqrt(squares[k])) - 1) < 0.05);
 }
 
-int main(void)
+int test_light_arm(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_errors_the_light_stands_where_it_is_driven),

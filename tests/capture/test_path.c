@@ -141,7 +141,7 @@ static void the_goniometer_is_within_five_percent_of_the_bound(void **state)
     free(number);
 }
 
-int main(void)
+int test_path(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(few_poses_are_ordered_nearly_as_well_as_can_be),

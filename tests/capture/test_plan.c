@@ -153,7 +153,7 @@ static void a_light_at_the_horizon_stays_above_it(void **state)
     assert_true(angle_deg(driven, light) < 4);
 }
 
-int main(void)
+int test_plan(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ubo81_has_all_pairs_and_moves_the_camera_once_per_view),

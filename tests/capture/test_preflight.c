@@ -239,7 +239,7 @@ static void each_check_finds_its_fault(void **state)
     }
 }
 
-int main(void)
+int test_preflight(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_good_rig_passes_everything_and_leaves_nothing_behind),

@@ -427,7 +427,7 @@ static void what_does_not_fit_is_refused_with_the_largest_that_does(void **state
         assert_int_equal(weft_paper_parse(bad[i], &paper, NULL), WEFT_BAD_USAGE);
 }
 
-int main(void)
+int test_print(void)
 {
     if (system("command -v pdftoppm >/dev/null && command -v pdftotext >/dev/null") != 0) {
         puts("skipped: there is no pdftoppm");

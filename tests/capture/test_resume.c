@@ -170,7 +170,7 @@ static void what_a_dead_process_left_is_swept_away_and_nothing_else(void **state
     remove_session();
 }
 
-int main(void)
+int test_resume(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_session_killed_at_any_moment_loses_and_repeats_nothing),

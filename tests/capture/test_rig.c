@@ -267,7 +267,7 @@ static void errors_of_a_stay_have_the_size_that_the_settings_say(void **state)
     assert_true(fabs(sqrt(squares / stays) / settings.stay_translation_mm - 1) < 0.05);
 }
 
-int main(void)
+int test_rig(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_patches_obey_exposure_cosine_falloff_and_vignetting),

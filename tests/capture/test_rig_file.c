@@ -206,7 +206,7 @@ static void every_shipped_rig_is_sound(void **state)
     }
 }
 
-int main(void)
+int test_rig_file(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_what_is_read),

@@ -292,7 +292,7 @@ static void a_rehearsal_counts_and_writes_nothing(void **state)
     assert_int_equal(scratch_folder_entries(), 1); /* plan.csv */
 }
 
-int main(void)
+int test_run(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_seed_gives_the_same_bytes_for_any_number_of_threads),

@@ -112,7 +112,7 @@ static void bytes_do_not_depend_on_the_number_of_threads(void **state)
     weft_virtual_sensor_free(&sensor);
 }
 
-int main(void)
+int test_sensor(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variance_is_the_mean_plus_the_read_noise),

@@ -138,7 +138,7 @@ static void a_frame_that_the_camera_does_not_deliver_is_asked_for_again(void **s
     remove_session();
 }
 
-int main(void)
+int test_sensor_frames(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_session_begins_with_them),

@@ -263,7 +263,7 @@ static void a_list_that_names_no_folder_is_refused(void **state)
     assert_int_equal(list.count, 0);
 }
 
-int main(void)
+int test_session_check(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_list_that_names_no_folder_is_refused),

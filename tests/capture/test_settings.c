@@ -67,7 +67,7 @@ static void the_text_of_the_settings_reads_back(void **state)
     free(text);
 }
 
-int main(void)
+int test_settings(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rig_file_overrides_what_it_names),

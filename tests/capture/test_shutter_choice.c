@@ -94,7 +94,7 @@ static void choices_of_real_cameras_are_times(void **state)
     assert_true(count > 300);
 }
 
-int main(void)
+int test_shutter_choice(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(words_of_cameras_are_seconds),

@@ -481,7 +481,7 @@ static int tear_down(void **state)
 
 #define WITH_TESTBED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
-int main(void)
+int test_stage_device(void)
 {
     const char *preloaded = getenv("LD_PRELOAD");
     if (!preloaded || !strstr(preloaded, "umockdev")) {

@@ -81,7 +81,7 @@ static void a_run_that_ends_early_says_why(void **state)
     free(page);
 }
 
-int main(void)
+int test_status_page(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_tells_photographs_stays_faults_and_the_drift_of_the_lamp),

@@ -130,7 +130,7 @@ static void a_photograph_that_cannot_be_synced_has_no_line(void **state)
     remove_session();
 }
 
-int main(void)
+int test_sync(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_line_follows_its_synced_photograph_and_a_stay_ends_synced),

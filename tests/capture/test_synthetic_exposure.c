@@ -66,7 +66,7 @@ static void a_series_is_one_view_two_stops_apart(void **state)
     assert_int_equal(darker, 2);
 }
 
-int main(void)
+int test_synthetic_exposure(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_tone_curve_is_an_s),

@@ -108,7 +108,7 @@ static void the_rim_shades_the_corners(void **state)
     assert_true(least > 0.3 && least < 0.9);
 }
 
-int main(void)
+int test_synthetic_lens(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_comes_back_to_its_pixel),       cmocka_unit_test(the_lens_distorts),

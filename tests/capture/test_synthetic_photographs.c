@@ -387,7 +387,7 @@ static void a_folder_in_use_is_left_alone(void **state)
     assert_int_not_equal(access("used.truth.json", F_OK), 0);
 }
 
-int main(void)
+int test_synthetic_photographs(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(markers_lie_where_the_truth_says), cmocka_unit_test(photographs_show_the_true_reflectance),

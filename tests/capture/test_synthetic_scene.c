@@ -271,7 +271,7 @@ static void a_ball_mirrors_the_window(void **state)
     assert_float_equal(seen, 0.66 * 77, 1e-3);
 }
 
-int main(void)
+int test_synthetic_scene(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_falls_with_square_and_cosine),

@@ -213,7 +213,7 @@ static void the_choice_takes_every_view_once_with_all_lights_among_them(void **s
     assert_int_equal(weft_truth_choose(&full, 81, chosen), 3);
 }
 
-int main(void)
+int test_truth(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_and_lights_are_those_of_the_virtual_rig),

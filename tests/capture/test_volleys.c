@@ -519,7 +519,7 @@ static void cameras_share_the_pose_of_a_turntable(void **state)
     weft_stage_free(stage);
 }
 
-int main(void)
+int test_volleys(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_killed_capture_goes_on),

@@ -2,7 +2,7 @@
 # A real camera on USB, from its recording: libgphoto2 knows it, and knows that it cannot be released. Usage:
 # recorded_camera.sh WEFT ASSETS
 set -eu
-cameras=$2/../../shared/real/camera-usb/umockdev/cameras
+cameras=${WEFT_SHARED:-/nonexistent}/real/camera-usb/umockdev/cameras
 recorded=$cameras/canon-powershot-sx200
 command -v umockdev-run >/dev/null || { echo "skipped: needs umockdev-run" && exit 77; }
 [ -r "$recorded.noint.umockdev" ] || { echo "skipped: no recordings in $cameras" && exit 77; }

@@ -306,7 +306,7 @@ static int enter(void **state)
 
 #define WITH_TESTBED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
-int main(void)
+int test_check_laboratory(void)
 {
     const char *preloaded = getenv("LD_PRELOAD");
     if (!preloaded || !strstr(preloaded, "umockdev")) {

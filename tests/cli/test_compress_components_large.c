@@ -124,7 +124,7 @@ static void what_a_killed_run_was_writing_is_removed(void **state)
     expect_done(&got, "in 6 blocks");
 }
 
-int main(void)
+int test_compress_components_large(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(killed_again_and_again_it_ends_with_the_same_bytes),

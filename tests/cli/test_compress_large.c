@@ -310,7 +310,7 @@ static void little_memory_changes_no_byte_and_is_not_exceeded(void **state)
     }
 }
 
-int main(void)
+int test_compress_large(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(killed_again_and_again_it_ends_with_the_same_bytes),

@@ -144,7 +144,7 @@ static void import_leaves_nothing_when_a_photograph_is_bad(void **state)
     unlink("file-out.btf.h5");
 }
 
-int main(void)
+int test_file_commands(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(eval_appends_the_brdf_to_every_row),

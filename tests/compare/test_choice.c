@@ -143,7 +143,7 @@ static void page_names_a_chosen_model_once(void **state)
     free(page);
 }
 
-int main(void)
+int test_choice(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(offers_are_beaten_by_what_can_be_had),

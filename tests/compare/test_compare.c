@@ -4,6 +4,7 @@
 #include "compare/report/compare.h"
 #include "reflectance/microcylinder/file.h"
 #include "tests/compare/fixture.h"
+#include "tests/support/suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -342,7 +343,7 @@ static void a_material_of_another_size_is_refused(void **state)
 }
 
 /* --drawn: those whose scenes are looked at, too. */
-int main(int argc, char **argv)
+int test_compare(void)
 {
     const struct CMUnitTest drawn[] = {
         cmocka_unit_test(the_page_compares_every_model_that_is_given),
@@ -357,7 +358,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),
     };
-    if (argc > 1 && strcmp(argv[1], "--drawn") == 0)
+    if (suite_argument && strcmp(suite_argument, "drawn") == 0)
         return cmocka_run_group_tests(drawn, NULL, NULL);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -311,7 +311,7 @@ static void finer_layers_hold_what_rounding_left(void **state)
     weft_material_free(&stored);
 }
 
-int main(void)
+int test_error_budget(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_part_is_what_its_stage_added),

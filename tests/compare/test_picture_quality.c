@@ -125,7 +125,7 @@ static void pictures_of_different_sizes_are_refused(void **state)
     weft_image_free(&b);
 }
 
-int main(void)
+int test_picture_quality(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_differ_as_other_programs_say),

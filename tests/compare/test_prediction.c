@@ -210,7 +210,7 @@ static void what_is_asked_for_is_predicted(void **state)
     unlink(path);
 }
 
-int main(void)
+int test_prediction(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(events_say_how_long_a_frame_takes),

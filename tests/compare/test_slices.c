@@ -165,7 +165,7 @@ static void few_photographs_have_no_slices(void **state)
     weft_contenders_close(&contenders);
 }
 
-int main(void)
+int test_slices(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_value_is_that_of_the_model),

@@ -348,7 +348,7 @@ static void bytes_are_those_of_the_file(void **state)
     assert_int_not_equal(access(scratch, F_OK), 0);
 }
 
-int main(void)
+int test_tradeoff(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_list_has_what_the_photographs_carry),

@@ -357,7 +357,7 @@ static void so_many_pictures_are_chosen(void **state)
     }
 }
 
-int main(void)
+int test_tradeoff_rows(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(so_many_pictures_are_chosen),

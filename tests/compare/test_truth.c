@@ -362,7 +362,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
         skip();
 }
 
-int main(void)
+int test_truth(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_large_plane_far_away_has_the_mean_of_the_dataset),

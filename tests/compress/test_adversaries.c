@@ -79,7 +79,7 @@ static void no_value_exceeds_the_limit_and_no_model_its_smaller_one(void **state
     check(*state);
 }
 
-int main(void)
+int test_adversaries(void)
 {
     struct CMUnitTest tests[ADVERSARIES];
     for (int i = 0; i < ADVERSARIES; i++)

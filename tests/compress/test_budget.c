@@ -180,7 +180,7 @@ static void impossible_budgets_are_refused(void **state)
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_budget(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_larger_budget_is_kept_and_leaves_less_error),

@@ -583,7 +583,7 @@ static void odd_numbers_are_refused(void **state)
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_components(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_follow_samples_and_what_lies_between_them),

@@ -411,7 +411,7 @@ static void impossible_requests_are_refused(void **state)
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_compress(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_report_what_the_stored_texels_leave),

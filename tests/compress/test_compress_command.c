@@ -277,7 +277,7 @@ static void a_full_disk_is_3_and_leaves_nothing(void **state)
     expect_weft("compress command.btf.h5 -o nowhere/full.weft --lobes 2", 3, "nowhere");
 }
 
-int main(void)
+int test_compress_command(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_becomes_a_material_with_a_table_of_errors),

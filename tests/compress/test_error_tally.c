@@ -95,7 +95,7 @@ static void entries_keep_every_count(void **state)
     weft_error_tally_free(copy);
 }
 
-int main(void)
+int test_error_tally(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(percentiles_agree_with_sorted_values),

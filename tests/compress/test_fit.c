@@ -302,7 +302,7 @@ static void weights_act_as_repeated_samples(void **state)
     assert_true(fabs(plain) > 3 * fabs(weighted));
 }
 
-int main(void)
+int test_fit(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(truth_without_noise_is_recovered),

@@ -193,7 +193,7 @@ static void few_samples_afford_few_lobes(void **state)
     assert_int_equal(weft_fit_affordable_lobes(&fixture->bundle, &fixture->samples, 3, true), 0);
 }
 
-int main(void)
+int test_fit_extremes(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_zero),

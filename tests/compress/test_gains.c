@@ -163,7 +163,7 @@ static void the_file_says_the_error_of_its_reader_at_every_gain(void **state)
     }
 }
 
-int main(void)
+int test_gains(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_file_says_the_error_of_its_reader_at_every_gain),

@@ -121,7 +121,7 @@ static int remove_dataset(void **state)
     return remove("tilted.btf.h5");
 }
 
-int main(void)
+int test_given_frames(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(given_frames_are_kept_and_averaged_upward),

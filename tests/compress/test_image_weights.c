@@ -164,7 +164,7 @@ static void weights_of_one_change_no_byte(void **state)
     }
 }
 
-int main(void)
+int test_image_weights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_gross_error_of_small_weight_does_no_harm),

@@ -284,7 +284,7 @@ static void a_mean_has_the_symmetries_that_its_samples_have(void **state)
     assert_true(errors[1][0] < errors[0][0]);
 }
 
-int main(void)
+int test_kriging(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_covariance_is_the_sum_that_is_documented),

@@ -281,7 +281,7 @@ static void masked_lights_keep_the_mean_of_the_others(void **state)
     free_fits(&fits);
 }
 
-int main(void)
+int test_light(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(it_takes_a_fifth_of_the_error_of_cloth, texel_fixture_setup,

@@ -110,7 +110,7 @@ static void one_view_or_one_light_is_enough(void **state)
     }
 }
 
-int main(void)
+int test_light_extremes(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(extremes_stay_finite),

@@ -140,7 +140,7 @@ static void what_texels_say_has_the_mean_then(void **state)
     free(mean);
 }
 
-int main(void)
+int test_mean_texel(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_mean_is_that_of_the_texels),

@@ -124,7 +124,7 @@ static void reflectance_and_opacity_of_a_level_are_means_of_the_same_texels(void
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_opacity(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reflectance_and_opacity_of_a_level_are_means_of_the_same_texels),

@@ -162,7 +162,7 @@ static void frames_survive_packing(void **state)
     assert_memory_equal(&again, &packed, sizeof again);
 }
 
-int main(void)
+int test_pack(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_table_entry_gets_the_nearest_code),

@@ -177,7 +177,7 @@ static void a_table_of_three_views_does_not_hurt(void **state)
     }
 }
 
-int main(void)
+int test_retro_tape(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(peaks_are_where_they_were_measured),

@@ -75,7 +75,7 @@ static void bits_that_keep_a_texel_below_it_are(void **state)
     assert_true(left[0] > left[1] && left[1] > left[2]);
 }
 
-int main(void)
+int test_rounded_tables(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bits_that_lift_a_texel_over_the_limit_are_not_for_sale),

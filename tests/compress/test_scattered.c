@@ -415,7 +415,7 @@ static void bad_sets_keep_to_the_limits(void **state)
     hold_to_limits("two images", fill_truth, SCATTERED, 2, 2);
 }
 
-int main(void)
+int test_scattered(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(more_photographs_say_more_and_more_than_lobes),

@@ -96,7 +96,7 @@ static void no_smaller_model_serves_better_than_three_lobes(void **state)
     check(*state, 3, 0, 80);
 }
 
-int main(void)
+int test_smaller_models(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_smaller_model_serves_better_than_two_lobes),

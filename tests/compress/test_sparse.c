@@ -206,7 +206,7 @@ static void real_flash_photographs_predict_the_one_left_out(void **state)
     assert_true(median < 0.35);
 }
 
-int main(void)
+int test_sparse(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nine_images_give_one_lobe_with_the_exponent_of_the_region),

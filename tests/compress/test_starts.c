@@ -107,7 +107,7 @@ static void few_samples_are_all_looked_at(void **state)
     assert_most_are_found(*state, fit, (int)(sizeof fit / sizeof fit[0]), 4);
 }
 
-int main(void)
+int test_starts(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(few_texels_end_above_random_starts),
                                        cmocka_unit_test(the_third_lobe_of_the_screen_is_followed),

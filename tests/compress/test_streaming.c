@@ -397,7 +397,7 @@ static void a_material_of_another_dataset_is_noticed(void **state)
     weft_dataset_layout_free(&layout);
 }
 
-int main(void)
+int test_streaming(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plan_covers_each_texel_and_finishes_each_group_once),

@@ -147,7 +147,7 @@ static void components_and_a_target_exclude_each_other(void **state)
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_table_pca(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_few_components_suffice_where_tables_are_alike),

@@ -200,7 +200,7 @@ static void targets_that_mean_nothing_are_refused(void **state)
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_target(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_texel_has_the_smallest_model_that_meets_the_target),

@@ -139,7 +139,7 @@ static void extremes_stay_finite(void **state)
     }
 }
 
-int main(void)
+int test_weights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_stay_and_weights_fall_with_their_brightness),

@@ -316,7 +316,7 @@ static void a_material_too_small_to_cut_is_refused(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_blend(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_path_is_cheaper),

@@ -273,7 +273,7 @@ static void lobes_meet_and_levels_go_with_them(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_blend_spread(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_membrane_is_as_steep_as_asked),

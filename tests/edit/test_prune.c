@@ -477,7 +477,7 @@ static void the_tint_is_what_the_maps_say(void **state)
     close_stage(&s);
 }
 
-int main(void)
+int test_prune(void)
 {
     weft_error error = {0};
     if (weft_headless_create(WEFT_GL_CORE, &headless, &error) != WEFT_OK) {

@@ -270,7 +270,7 @@ static void the_command_says_what_it_did(void **state)
     assert_int_equal(WEXITSTATUS(system(WEFT_PROGRAM " tile missing.btf.h5 -o tile.tile.btf.h5 2>/dev/null")), 1);
 }
 
-int main(void)
+int test_tile(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_period_is_found_to_a_twentieth_of_a_texel_under_noise),

@@ -226,7 +226,7 @@ static void tables_that_make_no_sense_are_refused_with_their_line(void **state)
     expect_refusal("lx,ly,lz,vx,vy,vz,level\n0,0,1,0,0,1,-1\n", "model.csv:2: level -1");
 }
 
-int main(void)
+int test_model(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_material_is_what_its_evaluator_says_over_pi),

@@ -149,7 +149,7 @@ static void near_lights_are_seen_from_each_texel(void **state)
     close_raw(&o);
 }
 
-int main(void)
+int test_raw_btf(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_measured_directions_the_samples_come_back),

@@ -51,7 +51,7 @@ static void nobody_knows_what_lies_beside_a_window(void **state)
     weft_relief_free(&relief);
 }
 
-int main(void)
+int test_window(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_texel_of_a_window_has_the_height_where_it_lies),

@@ -268,7 +268,7 @@ static void requests_without_sense_are_refused(void **state)
     weft_stitch_free(&stitch);
 }
 
-int main(void)
+int test_acquisition(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_stated_noise_is_that_between_seeds),

@@ -128,7 +128,7 @@ static void a_single_corner_is_cut_off_facing_outward(void **state)
     }
 }
 
-int main(void)
+int test_cube_cases(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vertices_lie_on_exactly_the_edges_whose_ends_differ),

@@ -247,7 +247,7 @@ static void surfaces_without_sense_are_refused(void **state)
     take_up(&laid);
 }
 
-int main(void)
+int test_draped_cloth(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flat_cloth_looks_as_endless_cloth_does),

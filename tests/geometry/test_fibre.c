@@ -99,7 +99,7 @@ static void the_peak_of_the_highlight_is_what_its_definition_says(void **state)
     }
 }
 
-int main(void)
+int test_fibre(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exchanging_light_and_view_changes_nothing),

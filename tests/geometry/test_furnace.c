@@ -189,7 +189,7 @@ static void a_sample_of_the_virtual_rig_keeps_all_light(void **state)
     }
 }
 
-int main(void)
+int test_furnace(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_simulated_dataset_keeps_all_light),

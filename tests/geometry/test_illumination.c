@@ -249,7 +249,7 @@ static void the_same_path_gives_the_same_light(void **state)
     put_out(&lit);
 }
 
-int main(void)
+int test_illumination(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_cloth_vanishes_in_uniform_light),

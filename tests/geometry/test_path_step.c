@@ -44,7 +44,7 @@ static void a_reflection_leaves_the_albedo(void **state)
     assert_false(weft_path_reflect((weft_rgb){0, 0, 0}, &throughput));
 }
 
-int main(void)
+int test_path_step(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(directions_follow_the_cosine),

@@ -156,7 +156,7 @@ static void files_that_are_no_stitches_are_refused(void **state)
     assert_non_null(strstr(error.message, "expected 'stitch', found 'weave'"));
 }
 
-int main(void)
+int test_stitch_parse(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_reach_their_places),

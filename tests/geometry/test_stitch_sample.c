@@ -131,7 +131,7 @@ static void a_file_that_is_no_stitch_is_refused(void **state)
     assert_null(sample);
 }
 
-int main(void)
+int test_stitch_sample(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_light_is_that_of_the_simulation),

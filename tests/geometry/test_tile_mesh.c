@@ -298,7 +298,7 @@ static void the_mesh_does_not_depend_on_the_number_of_threads(void **state)
     weft_stitch_free(&again);
 }
 
-int main(void)
+int test_tile_mesh(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shipped_stitch_is_closed_manifold_and_oriented),

@@ -354,7 +354,7 @@ static void more_texels_than_pixels_are_refused(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_utia_folder_of_8_bit_photographs_is_decoded_from_srgb),

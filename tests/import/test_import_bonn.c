@@ -272,7 +272,7 @@ static void files_cut_anywhere_are_refused(void **state)
     refuse_beginnings(GOOD "rgb_half.btf");
 }
 
-int main(void)
+int test_import_bonn(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_stands_where_the_file_has_it),

@@ -156,7 +156,7 @@ static void models_that_are_not_understood_are_refused(void **state)
     }
 }
 
-int main(void)
+int test_import_bonn_colour(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_encoded_is_decoded),

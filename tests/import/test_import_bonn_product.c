@@ -72,7 +72,7 @@ static void halves_are_widened(void **state)
     }
 }
 
-int main(void)
+int test_import_bonn_product(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(products_are_sums_of_products),

@@ -42,7 +42,7 @@ static void nine_flash_photographs_become_plausible_reflectance(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import_cards(void)
 {
     if (access(cards, R_OK) != 0) {
         printf("skipped: no photographs in %s\n", cards);

@@ -390,7 +390,7 @@ static void sixteen_bits_may_be_linear(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import_colours(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_profile_of_a_phone_is_taken_out),

@@ -88,7 +88,7 @@ static void tenths_of_degrees_are_not_taken_for_degrees(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import_copies(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_copy_under_a_name_in_capitals_is_left_out),

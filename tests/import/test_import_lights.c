@@ -130,7 +130,7 @@ static void two_lists_and_bad_rows_are_refused(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import_lights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_lp_file_gives_one_view_and_its_lamps),

@@ -57,7 +57,7 @@ static void the_relief_is_bright_toward_the_lamp(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import_lion(void)
 {
     if (access(lion, R_OK) != 0) {
         printf("skipped: no photographs in %s\n", lion);

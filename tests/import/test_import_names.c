@@ -71,7 +71,7 @@ static void names_written_are_names_read(void **state)
     expect_angles(name, 30, 120, 75, 345);
 }
 
-int main(void)
+int test_import_names(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_of_the_public_sets_are_read),

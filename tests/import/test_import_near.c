@@ -116,7 +116,7 @@ static void tables_that_contradict_themselves_are_refused(void **state)
     expect_refusal("image_size.txt", "0\n", "0 cm");
 }
 
-int main(void)
+int test_import_near(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_white_plane_imports_as_the_cosine_of_its_light),

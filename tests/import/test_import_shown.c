@@ -130,7 +130,7 @@ static void a_list_of_what_is_not_there_is_named(void **state)
     folder_remove(&folder);
 }
 
-int main(void)
+int test_import_shown(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photographs_are_turned_as_they_are_shown),

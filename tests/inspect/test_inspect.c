@@ -154,7 +154,7 @@ static void a_missing_file_and_a_strange_name_are_refused(void **state)
     unlink("inspect.txt");
 }
 
-int main(void)
+int test_inspect(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_says_what_it_holds_and_what_is_masked),

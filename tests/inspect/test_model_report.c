@@ -95,7 +95,7 @@ static void a_material_without_maps_is_refused(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_model_report(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_texel_has_the_colour_of_its_model),

@@ -20,7 +20,7 @@ static void mip_levels_lower_the_aliasing_of_a_far_checkerboard_tenfold(void **s
     weft_material_free(&checker);
 }
 
-int main(void)
+int test_aliasing(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mip_levels_lower_the_aliasing_of_a_far_checkerboard_tenfold),

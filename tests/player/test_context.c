@@ -4,6 +4,7 @@
 #include "player/draw/programs.h"
 #include "player/scene/environment.h"
 #include "stage.h"
+#include "tests/support/suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -263,10 +264,10 @@ static void without_egl_devices_the_cause_is_said(void **state)
     assert_null(headless);
 }
 
-int main(int argc, char **argv)
+int test_context(void)
 {
     /* Vendors are looked up once in a process: this one test runs in its own. */
-    if (argc > 1 && strcmp(argv[1], "--without-drivers") == 0) {
+    if (suite_argument && strcmp(suite_argument, "without-drivers") == 0) {
         const struct CMUnitTest tests[] = {cmocka_unit_test(without_egl_devices_the_cause_is_said)};
         return cmocka_run_group_tests(tests, NULL, NULL);
     }

@@ -344,7 +344,7 @@ static void the_scene_lists_its_lights_before_those_of_the_map(void **state)
     weft_image_free(&image);
 }
 
-int main(void)
+int test_environment(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_uniform_sky_lights_every_surface_with_its_radiance),

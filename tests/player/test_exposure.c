@@ -93,7 +93,7 @@ static void a_picture_without_light_is_no_trouble(void **state)
     assert_float_equal(weft_exposure_for_picture(&one, 1, false), 35, 0.01);
 }
 
-int main(void)
+int test_exposure(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_brighter_picture_is_shown_no_darker),

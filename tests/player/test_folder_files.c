@@ -77,7 +77,7 @@ static void a_crowded_folder_is_cut(void **state)
     weft_folder_files_free(&files);
 }
 
-int main(void)
+int test_folder_files(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(folders_come_first_and_only_what_can_be_opened_is_listed),

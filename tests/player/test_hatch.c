@@ -208,7 +208,7 @@ static void a_picture_that_is_saved_is_smooth(void **state)
     free(part);
 }
 
-int main(void)
+int test_hatch(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_at_rest_has_no_hatch),

@@ -114,7 +114,7 @@ static void the_oldest_of_many_changes_is_forgotten(void **state)
     assert_float_equal(scene.exposure, 10, 0);
 }
 
-int main(void)
+int test_history(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(what_was_done_is_taken_back_in_order_and_done_again, begin, end),

@@ -436,7 +436,7 @@ static void evaluator_and_shader_agree_where_there_are_holes(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_holes(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_half_covered_level_shows_half_of_the_background),

@@ -330,7 +330,7 @@ static void the_docs_list_every_key_in_order(void **state)
 {
     (void)state;
     static char page[65536];
-    FILE *file = fopen(WEFT_TEST_DOCS "/reference/keys.md", "rb");
+    FILE *file = fopen(WEFT_TREE "/docs/reference/keys.md", "rb");
     assert_non_null(file);
     page[fread(page, 1, sizeof page - 1, file)] = 0;
     fclose(file);
@@ -352,7 +352,7 @@ static void the_docs_list_every_key_in_order(void **state)
     }
 }
 
-int main(void)
+int test_interaction(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_left_drag_across_half_the_window_turns_half_way_round),

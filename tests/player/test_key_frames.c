@@ -163,7 +163,7 @@ static void faults_are_named(void **state)
     expect_refusal("", "path.csv");
 }
 
-int main(void)
+int test_key_frames(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_key_is_met_and_the_rest_of_the_scene_stays),

@@ -224,7 +224,7 @@ static void polling_an_idle_loader_does_nothing(void **state)
     assert_false(some);
 }
 
-int main(void)
+int test_loader(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_load_is_read_elsewhere_and_shown_here, set_up, tear_down),

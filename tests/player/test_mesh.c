@@ -284,7 +284,7 @@ static void a_missing_or_binary_obj_is_bad_input(void **state)
     assert_non_null(strstr(error.message, "zero byte"));
 }
 
-int main(void)
+int test_mesh(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_plane_is_a_unit_square_that_faces_up),

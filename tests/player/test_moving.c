@@ -260,7 +260,7 @@ static void few_lights_have_the_mean_of_all_of_them(void **state)
     weft_canvas_free(&canvas);
 }
 
-int main(void)
+int test_moving(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_small_frame_shows_the_same_at_the_same_places),

@@ -163,7 +163,7 @@ static void absurd_times_do_no_harm(void **state)
     assert_float_equal(weft_pace_side(&pace), 0.25, 1e-12);
 }
 
-int main(void)
+int test_pace(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_fast_machine_draws_every_pixel_and_does_not_hurry),

@@ -469,7 +469,7 @@ static void coarse_triangles_of_a_small_picture_hardly_change_it(void **state)
     weft_image_free(&fine_sampled);
 }
 
-int main(void)
+int test_picture(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_wipe_shows_one_mode_left_of_the_divider_and_another_right_of_it),

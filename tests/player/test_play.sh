@@ -8,7 +8,7 @@ weft=$1 make=$2 weaves=$3
 need xvfb-run xdotool cmp
 
 if [ "${4-}" != inside ]; then
-    rm -rf play && "$make" --make play
+    rm -rf play && "$make" test_render play
     "$weft" play --help | grep -q '^Example: weft play' || { "$weft" play --help; exit 1; }
     # No window can be opened twice by accident: the counted run ends by itself.
     xvfb-run -a -s "-screen 0 800x600x24" "$weft" play play/cloth.weft --size 160x120 --frames 5 | grep "5 frames"

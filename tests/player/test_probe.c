@@ -186,7 +186,7 @@ static void the_shape_of_a_lobe_follows_its_parameters(void **state)
     assert_float_equal(shape.direction.z, 0.8, 1e-6);
 }
 
-int main(void)
+int test_probe(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_probe_says_what_the_shader_saw),

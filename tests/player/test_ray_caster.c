@@ -678,7 +678,7 @@ static void the_screen_gets_srgb_from_both_twins(void **state)
     }
 }
 
-int main(void)
+int test_ray_caster(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_level_is_log2_of_the_longer_side_of_the_pixel),

@@ -183,7 +183,7 @@ static void what_cannot_be_stored_is_said_and_kept_for_this_window(void **state)
     setenv("XDG_STATE_HOME", here, 1);
 }
 
-int main(void)
+int test_recent_files(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(the_next_window_has_the_newest_first_and_each_once, forget),

@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/picture/colour.h"
+#include "tests/support/suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -384,10 +385,10 @@ static void a_failing_system_is_exit_code_3_and_leaves_no_picture(void **state)
     assert_int_equal(run("ls | grep -q '^a\\.\\|\\.a\\.\\|tmp'"), 1);
 }
 
-int main(int argc, char **argv)
+int test_render(void)
 {
-    if (argc == 3 && strcmp(argv[1], "--make") == 0) {
-        make_files(argv[2]);
+    if (suite_argument) {
+        make_files(suite_argument);
         return 0;
     }
     const struct CMUnitTest tests[] = {

@@ -58,7 +58,7 @@ static void notes_come_and_go_by_themselves(void **state)
     assert_in_range(turns_at_work(&repose, second, &now_s, 60), 7, 12);
 }
 
-int main(void)
+int test_repose(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_shown_where_nothing_happens),

@@ -418,7 +418,7 @@ static void a_weave_has_its_own_size_until_it_lies_on_a_material(void **state)
     weft_scene_request_free(&request);
 }
 
-int main(void)
+int test_scene_loader(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_named_is_shown_and_named),

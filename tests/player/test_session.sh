@@ -10,7 +10,7 @@ weft=$1 make=$2 drop=$3 weaves=$4
 need xvfb-run xdotool cmp convert import
 
 if [ "${5-}" != inside ]; then
-    rm -rf session && "$make" --make session
+    rm -rf session && "$make" test_render session
     exec timeout 500 xvfb-run -a -s "-screen 0 1000x800x24" "$0" "$weft" "$make" "$drop" "$weaves" inside
 fi
 

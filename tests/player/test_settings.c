@@ -281,7 +281,7 @@ static void a_cloth_has_its_real_size(void **state)
     weft_settings_free(&s);
 }
 
-int main(void)
+int test_settings(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_value_is_read),

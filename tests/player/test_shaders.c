@@ -697,7 +697,7 @@ static void texels_are_square_on_the_mesh(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_shaders(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_are_square_on_the_mesh),

@@ -126,7 +126,7 @@ static void a_folder_that_is_not_there_is_an_error(void **state)
     assert_int_equal(weft_watch_poll(*state, 1), -1);
 }
 
-int main(void)
+int test_watch(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(nothing_changed_at_first, set_up, tear_down),

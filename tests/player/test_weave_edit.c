@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static const char *const cloth = WEFT_TEST_WEAVE;
+static const char *const cloth = WEFT_ASSETS "/weaves/cotton_twill.wv";
 
 static const weft_weave_parameter_range *range_of(const char *name)
 {
@@ -218,7 +218,7 @@ static void a_saved_weave_reads_back_to_what_was_changed(void **state)
     weft_weave_edit_free(&edit);
 }
 
-int main(void)
+int test_weave_edit(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_value_reaches_the_yarns_that_were_alike_and_no_others),

@@ -91,7 +91,7 @@ static void cloth_without_inclination_noise_has_one_mean(void **state)
     weft_weave_free(&weave);
 }
 
-int main(void)
+int test_weave_texels(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(means_are_within_a_thousandth),

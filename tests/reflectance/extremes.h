@@ -4,6 +4,7 @@
 
 #include "tests/reflectance/random.h"
 #include "tests/support/cmocka_all.h"
+#include "tests/support/suite.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -88,9 +89,9 @@ static inline void extremes_run(extremes_case *check, long count)
 }
 
 /* The number of cases: the first argument of the program. */
-static inline long extremes_count(int argc, char **argv)
+static inline long extremes_count(void)
 {
-    return argc > 1 ? strtol(argv[1], NULL, 10) : 100000;
+    return suite_argument ? strtol(suite_argument, NULL, 10) : 100000;
 }
 
 #endif

@@ -218,7 +218,7 @@ static void below_the_horizon_there_is_nothing(void **state)
     assert_true(weft_bard_brdf(WEFT_BARD_IN_PLANE, 0, weft_bard_grid_lookup, &grid, up, up) == 1);
 }
 
-int main(void)
+int test_bard(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(map_and_value_match_every_row),

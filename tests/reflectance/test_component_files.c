@@ -96,7 +96,7 @@ static void images_have_their_values(void **state)
     close_file(&squared);
 }
 
-int main(void)
+int test_component_files(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kinds_are_those_of_the_files),

@@ -102,7 +102,7 @@ static void a_highlight_is_taken_from_the_views_that_saw_it(void **state)
     assert_true(alike > 2 * doubted);
 }
 
-int main(void)
+int test_component_maps(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_highlight_is_taken_from_the_views_that_saw_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);

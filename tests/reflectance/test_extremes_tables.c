@@ -76,12 +76,12 @@ static void no_satin_leaves_its_bounds(void **state)
     extremes_run(bard_case, cases);
 }
 
-int main(int argc, char **argv)
+int test_extremes_tables(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_lobe_leaves_its_bounds),
         cmocka_unit_test(no_satin_leaves_its_bounds),
     };
-    cases = extremes_count(argc, argv);
+    cases = extremes_count();
     return cmocka_run_group_tests_name("extremes of lobes and tables", tests, NULL, NULL);
 }

@@ -173,12 +173,12 @@ static void no_reflectance_leaves_its_bounds(void **state)
     extremes_run(reflectance_case, cases);
 }
 
-int main(int argc, char **argv)
+int test_extremes_woven(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_point_or_texture_value_leaves_its_bounds),
         cmocka_unit_test(no_reflectance_leaves_its_bounds),
     };
-    cases = extremes_count(argc, argv);
+    cases = extremes_count();
     return cmocka_run_group_tests_name("extremes of woven cloth", tests, NULL, NULL);
 }

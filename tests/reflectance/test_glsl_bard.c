@@ -76,7 +76,7 @@ static void compare_dialect(weft_gl_profile profile)
     assert_true(different[1] < TWIN_QUERIES / 200);
 }
 
-int main(void)
+int test_glsl_bard(void)
 {
     return twin_main("GLSL twin of BARD", compare_dialect);
 }

@@ -94,7 +94,7 @@ static void compare_dialect(weft_gl_profile profile)
     }
 }
 
-int main(void)
+int test_glsl_gaussian(void)
 {
     return twin_main("GLSL twin of Gaussians", compare_dialect);
 }

@@ -69,7 +69,7 @@ static void compare_dialect(weft_gl_profile profile)
     }
 }
 
-int main(void)
+int test_glsl_lafortune(void)
 {
     return twin_main("GLSL twin of lobes", compare_dialect);
 }

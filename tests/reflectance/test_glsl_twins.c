@@ -105,7 +105,7 @@ static void compare_fabrics(weft_gl_profile profile)
     compare_fabric("silk_shantung", false, profile, queries);
 }
 
-int main(void)
+int test_glsl_twins(void)
 {
     return twin_main("GLSL twins", compare_fabrics);
 }

@@ -104,7 +104,7 @@ static void interpolation_weighs_colour_and_opacity_alike(void **state)
     assert_true(two.r == (weft_real)0.75 && two.g == 0 && two.b == (weft_real)0.25 && two.a == (weft_real)0.875);
 }
 
-int main(void)
+int test_lafortune(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lobes_match_every_row),

@@ -252,7 +252,7 @@ static void ceilings_are_stored_rounded_up(void **state)
     weft_material_set_ceiling(&level, 4, 0);
 }
 
-int main(void)
+int test_material_texel(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texel_is_the_equation_of_its_codes),

@@ -137,7 +137,7 @@ static void sigmoid_never_overflows(void **state)
     assert_true(weft_sigmoid(3, 0) == 0.5);
 }
 
-int main(void)
+int test_spherical_gaussian(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(product_matches_every_row),

@@ -107,7 +107,7 @@ static void specular_light_is_normalised_over_both_hemispheres(void **state)
     weft_weave_free(&weave);
 }
 
-int main(void)
+int test_weave_energy(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(published_fabrics_reflect_no_more_than_they_receive),

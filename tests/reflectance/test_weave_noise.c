@@ -216,7 +216,7 @@ static void specular_part_with_ks_one_reflects_all_light_on_average(void **state
     weft_weave_free(&weave);
 }
 
-int main(void)
+int test_weave_noise(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(seed_zero_is_no_noise),

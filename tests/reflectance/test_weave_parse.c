@@ -257,7 +257,7 @@ static void files_that_are_no_weaves_are_refused(void **state)
     remove("zero.wv");
 }
 
-int main(void)
+int test_weave_parse(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_published_fabric_is_read),

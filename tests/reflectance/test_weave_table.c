@@ -35,7 +35,7 @@ static void table_holds_header_yarns_and_pattern(void **state)
     weft_weave_free(&weave);
 }
 
-int main(void)
+int test_weave_table(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(table_holds_header_yarns_and_pattern)};
     return cmocka_run_group_tests_name("weave table", tests, NULL, NULL);

@@ -132,7 +132,7 @@ static void mean_of_the_tile_matches_every_row(void **state)
     vectors_close(&v);
 }
 
-int main(void)
+int test_weave_vectors(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scale_is_the_reference_s),

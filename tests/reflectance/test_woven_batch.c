@@ -268,7 +268,7 @@ static void a_scale_is_near_and_its_changes_are_nearer(void **state)
     weft_weave_free(&weave);
 }
 
-int main(void)
+int test_woven_batch(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(textures_of_ordinary_cloth_are_those_of_the_scalar_function),

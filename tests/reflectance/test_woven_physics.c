@@ -314,7 +314,7 @@ static void a_spine_that_ends_in_a_spike_keeps_its_length(void **state)
     }
 }
 
-int main(void)
+int test_woven_physics(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reflectance_is_reciprocal),

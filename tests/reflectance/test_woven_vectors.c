@@ -102,7 +102,7 @@ static void segment_texture_matches_every_row(void **state)
     vectors_close(&v);
 }
 
-int main(void)
+int test_woven_vectors(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spine_radius_matches_every_row),

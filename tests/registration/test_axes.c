@@ -328,7 +328,7 @@ static void a_perfect_rig_is_the_nominal_one(void **state)
     }
 }
 
-int main(void)
+int test_axes(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_perfect_rig_is_the_nominal_one),

@@ -207,7 +207,7 @@ static void the_axes_as_specified_would_not_do(void **state)
     assert_true(worst > settings.limits.tolerance_mm);
 }
 
-int main(void)
+int test_axes_session(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_axes_as_specified_would_not_do),

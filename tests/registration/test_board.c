@@ -111,7 +111,7 @@ static void charuco_boards_of_old_and_new_layout_are_found(void **state)
     assert_corners_are_true(10, true);
 }
 
-int main(void)
+int test_board(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_board_is_read_from_its_text),

@@ -208,7 +208,7 @@ static void what_clips_in_all_or_drowns_in_noise_is_masked(void **state)
     assert_int_equal(mask[0], WEFT_MASK_DARK);
 }
 
-int main(void)
+int test_bracket(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bracket_shows_a_contrast_of_ten_thousand),

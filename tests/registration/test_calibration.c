@@ -93,7 +93,7 @@ static void the_print_may_be_a_little_too_large(void **state)
     assert_true(worst_error(&truth, &truth, 1.003) < 0.05);
 }
 
-int main(void)
+int test_calibration(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vignetting_may_be_unknown),

@@ -259,7 +259,7 @@ static void both_meet_in_the_colours_of_the_truth(void **state)
     }
 }
 
-int main(void)
+int test_cameras_chain(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_camera_has_frames_brackets_and_colours_of_its_own),

@@ -347,7 +347,7 @@ static void the_event_and_the_file_agree(void **state)
     json_decref(event);
 }
 
-int main(void)
+int test_colour(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_chart_tells_the_colours_of_two_cameras),

@@ -135,7 +135,7 @@ static void the_metric_measures_small_differences(void **state)
     }
 }
 
-int main(void)
+int test_colour_difference(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_difference_is_the_published_one),

@@ -314,7 +314,7 @@ static void capture_keeps_a_colour(void **state)
     expect_weft(CAPTURE "--colour colour1.json", 1, "was begun with another colour");
 }
 
-int main(void)
+int test_colour_session(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_cameras_meet_in_one_colour_space),

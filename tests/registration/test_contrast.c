@@ -164,7 +164,7 @@ static void a_night_of_high_contrast_is_met_with_brackets(void **state)
     assert_true(without.high > 4 * with.high);
 }
 
-int main(void)
+int test_contrast(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_night_of_high_contrast_is_met_with_brackets)};
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

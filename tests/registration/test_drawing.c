@@ -80,7 +80,7 @@ static void a_target_without_size_is_refused(void **state)
     assert_int_equal(weft_drawing_create(&nothing, 0.05, &none, &error), WEFT_BAD_INPUT);
 }
 
-int main(void)
+int test_drawing(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_middle_of_a_patch_has_its_reflectance),

@@ -55,7 +55,7 @@ static void equations_that_say_nothing_of_an_unknown_are_singular(void **state)
     assert_false(weft_normal_equations_factor(&equations, 3));
 }
 
-int main(void)
+int test_normal_equations(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_line_through_its_points_is_found),

@@ -142,7 +142,7 @@ static void a_bent_plate_before_a_camera_that_is_not_the_declared_one(void **sta
     hold(&rig, &most);
 }
 
-int main(void)
+int test_other_rig(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bent_plate_before_a_camera_that_is_not_the_declared_one),

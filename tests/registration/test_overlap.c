@@ -50,7 +50,7 @@ static void the_sense_of_rotation_does_not_matter(void **state)
     assert_near(weft_overlap_area(one, 2, 2), weft_overlap_area(other, 2, 2), 1e-14);
 }
 
-int main(void)
+int test_overlap(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_quadrangle_around_a_pixel_covers_it_wholly),

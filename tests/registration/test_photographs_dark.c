@@ -88,7 +88,7 @@ static void dark_texels_are_masked_one_by_one(void **state)
     assert_int_equal(photograph.clipped_texels, 1);
 }
 
-int main(void)
+int test_photographs_dark(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paper_below_five_steps_of_its_file_is_not_looked_at),

@@ -344,7 +344,7 @@ static void a_list_of_something_else_is_refused(void **state)
         strstr(error.message, "'rows.lp' lists none of the photographs: it has 'z.jpg', the folder '0.jpg'"));
 }
 
-int main(void)
+int test_photographs_evidence(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_shadow_of_a_pin_ends_where_the_ray_through_its_head_does),

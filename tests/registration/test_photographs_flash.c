@@ -122,7 +122,7 @@ static void a_flash_is_found_where_it_is_though_its_beam_points_elsewhere(void *
     free(s);
 }
 
-int main(void)
+int test_photographs_flash(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flash_is_found_where_it_is_though_its_beam_points_elsewhere),

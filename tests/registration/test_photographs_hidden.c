@@ -127,7 +127,7 @@ static void what_was_masked_stays_and_is_not_counted_again(void **state)
     assert_int_equal(again, 0);
 }
 
-int main(void)
+int test_photographs_hidden(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_hidden_is_masked),

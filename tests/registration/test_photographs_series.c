@@ -307,7 +307,7 @@ static void the_darker_of_a_pair_tells_what_is_clipped(void **state)
     assert_memory_equal(texel, after, sizeof texel);
 }
 
-int main(void)
+int test_photographs_series(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),

@@ -154,7 +154,7 @@ static void most_corners_of_a_gently_bent_sheet_stay_or_none_count(void **state)
     }
 }
 
-int main(void)
+int test_photographs_strays(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_crossed_marker_costs_no_photograph),

@@ -172,7 +172,7 @@ static void a_plate_far_from_where_the_rig_promised_it_is_not_believed(void **st
     free(picture);
 }
 
-int main(void)
+int test_pose(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_are_found_at_every_tilt_with_noise_defocus_and_a_light_gradient),

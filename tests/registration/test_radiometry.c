@@ -181,7 +181,7 @@ static void without_a_usable_patch_nothing_is_measured(void **state)
     assert_int_equal(measure().patches, 0);
 }
 
-int main(void)
+int test_radiometry(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(irradiance_at_the_origin_is_the_cosine),

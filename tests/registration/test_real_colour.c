@@ -1,4 +1,4 @@
-/* Charts that others photographed (../shared/real/colour-charts): all that a person can read are found. */
+/* Charts that others photographed (WEFT_SHARED/real/colour-charts): all that a person can read are found. */
 #include "registration/colour/calibration.h"
 #include "tests/support/expect_ok.h"
 
@@ -63,7 +63,7 @@ static void a_chart_of_140_patches(void **state)
     assert_seen_at(&report, 23, 846 * 1920.0 / 1344, 413 * 1920.0 / 1344, 15);
 }
 
-int main(void)
+int test_real_colour(void)
 {
     if (access(REAL "passport.jpg", R_OK) != 0) {
         puts("skipped: the photographs of colour charts are not there");

@@ -111,7 +111,7 @@ static void a_tag_on_a_turntable(void **state)
     weft_lines_free(&names);
 }
 
-int main(void)
+int test_real_lens(void)
 {
     if (access(REAL "target-chessboard/left01.jpg", R_OK) != 0) {
         puts("skipped: the photographs of boards are not there");

@@ -96,7 +96,7 @@ static void highlights_on_a_glossy_ball_tell_the_lamps(void **state)
     weft_csv_free(&table);
 }
 
-int main(void)
+int test_real_lights(void)
 {
     char path[256];
     snprintf(path, sizeof path, "%s/lights-chrome-ball", real);

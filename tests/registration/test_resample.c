@@ -225,7 +225,7 @@ static void a_size_without_texels_is_refused(void **state)
     assert_int_equal(weft_resampler_create(&resampling, 0, 4, &resampler, NULL), WEFT_BAD_INPUT);
 }
 
-int main(void)
+int test_resample(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_constant_stays_constant_under_tilt_and_distortion),

@@ -204,7 +204,7 @@ static void a_frame_that_is_not_there_is_named(void **state)
     weft_session_free(&session);
 }
 
-int main(void)
+int test_sensor_faults(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_of_the_sensor_take_its_faults_out),

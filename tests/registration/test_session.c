@@ -296,7 +296,7 @@ static void the_report_names_every_view_and_shows_it(void **state)
     finish();
 }
 
-int main(void)
+int test_session(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_diffuser_comes_out_as_its_reflectance_times_the_cosine),

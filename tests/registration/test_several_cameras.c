@@ -210,7 +210,7 @@ static void cameras_of_unknown_colours_are_refused(void **state)
     assert_int_equal(weft_register_cameras(pair, 2, "no.btf.h5", settings, NULL, registration, NULL), WEFT_BAD_INPUT);
 }
 
-int main(void)
+int test_several_cameras(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_cameras_err_as_one_does),

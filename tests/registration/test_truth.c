@@ -142,7 +142,7 @@ static void texels_beside_the_frame_are_right_or_missing(void **state)
     free(pool);
 }
 
-int main(void)
+int test_truth(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_agree_with_the_truth),

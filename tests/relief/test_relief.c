@@ -382,7 +382,7 @@ static void nothing_is_known_beyond_the_border(void **state)
     assert_true(lost > 10000);
 }
 
-int main(void)
+int test_relief(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bumps_are_measured),

@@ -116,7 +116,7 @@ static void a_knit_has_the_heights_of_its_yarns(void **state)
     weft_stitch_free(&knit.stitch);
 }
 
-int main(void)
+int test_relief_cloth(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_knit_has_the_heights_of_its_yarns)};
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

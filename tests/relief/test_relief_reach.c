@@ -235,7 +235,7 @@ static int enter(void **state)
     return 0;
 }
 
-int main(void)
+int test_relief_reach(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_shorter_period_is_found_under_noise),

@@ -92,7 +92,7 @@ static void a_plane_moves_all_alike(void **state)
     weft_relief_free(&relief);
 }
 
-int main(void)
+int test_relief_taps(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_meets_the_first_of_what_it_could),

@@ -225,7 +225,7 @@ static void a_material_with_a_damaged_certificate_is_refused(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_certificate(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_half_width_is_the_product_of_its_factors),

@@ -46,7 +46,7 @@ static void the_record_of_a_material_comes_back(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_held_out(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_record_of_a_material_comes_back),

@@ -598,7 +598,7 @@ static int enter(void **state)
     return code;
 }
 
-int main(void)
+int test_material(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_material_of_any_shape_reads_back_as_written),

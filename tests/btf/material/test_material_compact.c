@@ -209,7 +209,7 @@ static void fewer_bits_take_the_nearest_code(void **state)
     }
 }
 
-int main(void)
+int test_material_compact(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fewer_bits_take_the_nearest_code),

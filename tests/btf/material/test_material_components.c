@@ -487,7 +487,7 @@ static void ceilings_never_round_down(void **state)
     assert_int_equal(weft_ceiling_code(1e30f), 255);
 }
 
-int main(void)
+int test_material_components(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_are_read_back),

@@ -193,7 +193,7 @@ static void more_texels_than_there_were_are_refused(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_material_gather(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_in_their_order_are_the_same_file),

@@ -226,7 +226,7 @@ static void a_plane_stays_a_plane(void **state)
     weft_material_free(&material);
 }
 
-int main(void)
+int test_material_heights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heights_are_read_back),

@@ -115,7 +115,7 @@ static void damage_is_named(void **state)
     assert_non_null(strstr(fault_of(0, SEEN_EXAMPLE_SIDE + 1, 0), "size"));
 }
 
-int main(void)
+int test_material_seen(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(maps_are_read_back),

@@ -185,7 +185,7 @@ static void sections_that_do_not_go_together_are_named(void **state)
     expect_refused("SPCA", "TPCA", "occurs twice");
 }
 
-int main(void)
+int test_table_basis(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(codes_are_the_mean_and_multiples_of_the_components),

@@ -521,7 +521,7 @@ static void flash_photographs_of_a_card_are_covered(void **state)
     weft_excerpt_free(&excerpt);
 }
 
-int main(void)
+int test_certify(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(images_that_were_not_seen_are_covered),

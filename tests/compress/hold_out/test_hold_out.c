@@ -601,7 +601,7 @@ static void the_error_of_a_diffuse_term_is_that_computed_by_hand(void **state)
     unlink(path);
 }
 
-int main(void)
+int test_hold_out(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tenth_of_views_and_lights_between_others_is_held_out_once),

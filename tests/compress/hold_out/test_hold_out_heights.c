@@ -384,7 +384,7 @@ static void heights_are_chosen_where_compress_keeps_them(void **state)
     unlink(path);
 }
 
-int main(void)
+int test_hold_out_heights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_are_seen_through_the_heights_that_are_there),

@@ -389,7 +389,7 @@ static void a_weave_without_highlights_or_too_few_images_are_refused(void **stat
     weft_weave_free(&weave);
 }
 
-int main(void)
+int test_fit_weave(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(staple_fabrics_are_found_again_from_30_percent_off),

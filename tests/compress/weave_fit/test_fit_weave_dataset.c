@@ -180,7 +180,7 @@ static int remove_input(void **state)
     return unlink(input);
 }
 
-int main(void)
+int test_fit_weave_dataset(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(whole_tiles_are_averaged_wherever_they_begin, remove_input),

@@ -143,7 +143,7 @@ static void a_wrong_start_ends_at_the_truth(void **state)
     weft_weave_free(&same);
 }
 
-int main(void)
+int test_fit_weave_photographs(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_wrong_start_ends_at_the_truth)};
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

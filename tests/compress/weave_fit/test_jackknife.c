@@ -104,7 +104,7 @@ static void one_cluster_tells_nothing(void **state)
         assert_true(isinf(found[i]));
 }
 
-int main(void)
+int test_jackknife(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variances_are_those_of_fits_without_a_cluster),

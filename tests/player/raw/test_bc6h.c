@@ -345,7 +345,7 @@ static void the_driver_decodes_bit_for_bit_in_opengl_es(void **state)
     decode_with(WEFT_GL_ES);
 }
 
-int main(void)
+int test_bc6h(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_block_of_one_colour_comes_out_exact),

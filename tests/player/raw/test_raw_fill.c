@@ -126,7 +126,7 @@ static void a_dataset_without_a_valid_sample_is_bad_input(void **state)
     weft_dataset_close(dataset);
 }
 
-int main(void)
+int test_raw_fill(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(valid_samples_lose_the_cosine_of_their_light),

@@ -239,7 +239,7 @@ static void opacity_is_interpolated_between_texels_and_levels(void **state)
     close_dataset(dataset);
 }
 
-int main(void)
+int test_raw_formats(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_is_near_the_evaluator),

@@ -164,7 +164,7 @@ static void opacity_takes_a_byte(void **state)
     }
 }
 
-int main(void)
+int test_raw_levels(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_level_is_the_mean_and_begins_again_at_its_end),

@@ -125,7 +125,7 @@ static void levels_begin_at_blocks_and_share_none(void **state)
     }
 }
 
-int main(void)
+int test_raw_plan(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_best_format_that_fits_is_chosen),

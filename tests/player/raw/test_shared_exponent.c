@@ -61,7 +61,7 @@ static void nothing_negative_or_too_large_is_kept(void **state)
     assert_float_equal(rgb[0], 65408, 0);
 }
 
-int main(void)
+int test_shared_exponent(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(channels_come_back_within_half_a_unit),

@@ -173,7 +173,7 @@ static void without_a_device_nothing_happens(void **state)
     weft_space_mouse_free(mouse);
 }
 
-int main(void)
+int test_space_mouse(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_point_follows_the_cap),

@@ -115,7 +115,7 @@ static void a_forbidden_device_is_named_with_the_rule_that_mends_it(void **state
     fake_hid_free(hid);
 }
 
-int main(void)
+int test_space_mouse_device(void)
 {
     const char *preloaded = getenv("LD_PRELOAD");
     if (!preloaded || !strstr(preloaded, "umockdev")) {

@@ -256,7 +256,7 @@ static void another_light_casts_another_shadow_on_the_ground(void **state)
     weft_image_free(&again);
 }
 
-int main(void)
+int test_ground(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cloth_stands_on_a_ground_that_takes_its_shadow),

@@ -231,7 +231,7 @@ static void unlit_folds_are_not_black_and_lit_ones_not_white(void **state)
     }
 }
 
-int main(void)
+int test_studio(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball_casts_no_shadow_on_its_lit_side),

@@ -86,7 +86,7 @@ static void the_fill_comes_from_where_the_environment_is_bright(void **state)
     free(environment);
 }
 
-int main(void)
+int test_studio_lights(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_key_light_fills_its_disc_and_starts_in_the_middle),

@@ -67,7 +67,7 @@ static void only_the_overcast_sky_has_no_key_light(void **state)
     assert_int_equal(weft_surroundings_map("beach", &map, &error), WEFT_BAD_USAGE);
 }
 
-int main(void)
+int test_surroundings(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_overcast_sky_is_three_times_as_bright_above),

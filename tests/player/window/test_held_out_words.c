@@ -71,7 +71,7 @@ static void heights_that_are_left_out_are_not_what_was_measured(void **state)
     assert_true(weft_draws_whole_material(&scene, 32, false));
 }
 
-int main(void)
+int test_held_out_words(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_line_names_what_was_not_fitted),

@@ -18,7 +18,7 @@ static char *sources(void)
     assert_non_null(all);
     for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         char path[512];
-        snprintf(path, sizeof path, "%s/%s", WEFT_TEST_WINDOW, name[i]);
+        snprintf(path, sizeof path, "%s/%s", WEFT_TREE "/player/window", name[i]);
         FILE *file = fopen(path, "rb");
         assert_non_null(file);
         used += fread(all + used, 1, ROOM - 1 - used, file);
@@ -110,7 +110,7 @@ static void the_key_in_a_hint_does_the_same(void **state)
     assert_int_equal(listed, count);
 }
 
-int main(void)
+int test_hints(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_hint_has_its_widget),

@@ -161,7 +161,7 @@ static int close_frames(void **state)
     return 0;
 }
 
-int main(void)
+int test_notes(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_read_has_room_to_the_end),

@@ -100,7 +100,7 @@ static int close_frames(void **state)
     return 0;
 }
 
-int main(void)
+int test_widgets(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_hint_is_shown_all_along_its_widget),

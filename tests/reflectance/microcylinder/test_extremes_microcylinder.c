@@ -158,12 +158,12 @@ static void no_cloth_leaves_its_bounds(void **state)
     extremes_run(cloth_case, cases);
 }
 
-int main(int argc, char **argv)
+int test_extremes_microcylinder(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_tangent_leaves_its_bounds),
         cmocka_unit_test(no_cloth_leaves_its_bounds),
     };
-    cases = extremes_count(argc, argv);
+    cases = extremes_count();
     return cmocka_run_group_tests_name("extremes of microcylinder cloth", tests, NULL, NULL);
 }

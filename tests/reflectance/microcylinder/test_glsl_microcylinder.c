@@ -101,7 +101,7 @@ static void compare_dialect(weft_gl_profile profile)
         compare_cloth(profile, &cloths[i], queries);
 }
 
-int main(void)
+int test_glsl_microcylinder(void)
 {
     return twin_main("GLSL twin of microcylinder cloth", compare_dialect);
 }

@@ -92,7 +92,7 @@ static void names_stand_for_what_the_caller_gives(void **state)
     assert_true(description.cloth.thread[0].optics.albedo.b == (weft_real)0.4);
 }
 
-int main(void)
+int test_microcylinder_parse(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shipped_cloth_is_the_reference_cloth),

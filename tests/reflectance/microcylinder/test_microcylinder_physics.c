@@ -113,7 +113,7 @@ static void area_weighting_does_not_depend_on_the_number_of_samples(void **state
     assert_true(fabs(a - 2 * printed) <= 1e-6 * a);
 }
 
-int main(void)
+int test_microcylinder_physics(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scattering_is_symmetric),

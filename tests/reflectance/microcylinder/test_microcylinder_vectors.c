@@ -103,7 +103,7 @@ static void cloth_matches_every_row(void **state)
     vectors_close(&v);
 }
 
-int main(void)
+int test_microcylinder_vectors(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_tangent_matches_every_row),

@@ -285,7 +285,7 @@ static void linear_derivatives_follow_from_the_same_sums(void **state)
     }
 }
 
-int main(void)
+int test_fit_derivatives(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_derivative_is_that_of_the_model),

@@ -318,7 +318,7 @@ static int free_views(void **state)
     return 0;
 }
 
-int main(void)
+int test_predict_bard(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_made_by_the_model_is_reproduced),
