@@ -13,7 +13,6 @@ typedef enum short_memory_way {
 typedef struct short_memory_job {
     const char *name;
     short_memory_way way;
-    int stride; /* of its sites one in so many is tried, unless more is asked for: the dearer a run, the fewer */
     const char *argument[SHORT_MEMORY_ARGUMENTS]; /* after "weft" */
 } short_memory_job;
 

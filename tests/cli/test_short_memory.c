@@ -3,9 +3,10 @@
  *
  * Usage: test_short_memory inputs                    makes the folder 'inputs', which the jobs read
  *        test_short_memory [--more|--sites|--every] [JOB...] these jobs or subcommands, or all
- * The first allocation of a site fails (short_memory.h), alone: at every n-th site of a job. With --sites it is every
- * site, and the last allocation of each fails, too, with all that follow it: hours under AddressSanitizer; with --more
- * as many sites as some time allows, spread over the run; with --every the n-th allocation of all alone, n = 1, 2, 3
+ * The first allocation of a site fails (short_memory.h), alone: at a few sites spread over the job. With --sites it is
+ * every site, and the last allocation of each fails, too, with all that follow it: hours under AddressSanitizer; with
+ * --more as many sites as some time allows, spread over the run; with --every the n-th allocation of all alone, n = 1,
+ * 2, 3
  * ... until a run ends in which none failed. */
 #include "base/picture/image_library.h"
 #include "tests/cli/short_memory.h"
@@ -33,7 +34,7 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
-enum { MAX_SAID = 1 << 16, TIME_LIMIT_S = 120, MOST_FAULTS = 20, SYSTEM_FAILURE = 3, LEAKED = 23 };
+enum { MAX_SAID = 1 << 16, TIME_LIMIT_S = 120, MOST_FAULTS = 20, SYSTEM_FAILURE = 3, LEAKED = 23, FEW_SITES = 5 };
 
 /* Of processor time that a job may take with --more, about. */
 static const double more_s = 30;
@@ -242,11 +243,12 @@ static int count_sites(const short_memory_log *noted)
 }
 
 /* Every how many sites one is tried; a run that fails takes at most as long as one that does not. */
-static int choose_stride(const short_memory_job *job, const short_memory_log *noted, extent reach, double once_s)
+static int choose_stride(const short_memory_log *noted, extent reach, double once_s)
 {
+    int sites = count_sites(noted);
     if (reach == MORE)
-        return 1 + (int)(2 * count_sites(noted) * once_s / more_s);
-    return reach == FIRST ? job->stride : 1;
+        return 1 + (int)(2 * sites * once_s / more_s);
+    return reach == FIRST ? 1 + sites / FEW_SITES : 1;
 }
 
 static void try_sites(const short_memory_job *job, const outcome *whole, extent reach, double once_s)
@@ -254,7 +256,7 @@ static void try_sites(const short_memory_job *job, const outcome *whole, extent 
     static short_memory_log noted;
     static outcome got;
     memcpy(&noted, memory_log, sizeof noted);
-    int sites = 0, before = runs, stride = choose_stride(job, &noted, reach, once_s);
+    int sites = 0, before = runs, stride = choose_stride(&noted, reach, once_s);
     for (int i = 0; i < SHORT_MEMORY_SITES && faults < MOST_FAULTS; i++) {
         const short_memory_site *site = &noted.site[i];
         if (site->hash == 0 || sites++ % stride != 0)
