@@ -21,7 +21,7 @@ function(weft_suites program)
         string(APPEND entries "    {\"${suite}\", ${suite}},\n")
     endforeach()
     set(main ${CMAKE_CURRENT_BINARY_DIR}/${program}_main.c)
-    configure_file(${CMAKE_SOURCE_DIR}/tests/support/suite_main.c.in ${main} @ONLY)
+    configure_file(${CMAKE_SOURCE_DIR}/cmake/suite_main.c.in ${main} @ONLY)
     add_executable(${program} ${main} ${suites_SUITES} ${suites_SOURCES})
     # A suite is declared by the list of suites alone.
     set_target_properties(${program} PROPERTIES WEFT_HAS_SUITES ON)

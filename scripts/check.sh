@@ -29,7 +29,7 @@ benches() {
 # Every test under AddressSanitizer and UndefinedBehaviorSanitizer.
 sanitizers() {
     cmake --preset asan-ubsan -Wno-dev --log-level=WARNING >/dev/null && cmake --build --preset asan-ubsan &&
-        UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$PWD/tests/support/lsan.supp:print_suppressions=0 ctest --preset asan-ubsan -j "$jobs"
+        UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$PWD/tests/sanitizers/lsan.supp:print_suppressions=0 ctest --preset asan-ubsan -j "$jobs"
 }
 
 # What has threads of its own, under ThreadSanitizer.
