@@ -4,7 +4,6 @@
  * alone. Usage: bench_drape_bound STITCH DATASET.btf.h5 PICTURES/ [PATHS [SIDE]] */
 #include "bench/faultless_btf.h"
 #include "compare/truth/comparison.h"
-#include "compare/truth/trace.h"
 #include "geometry/drape/draped_cloth.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"

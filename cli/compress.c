@@ -6,7 +6,7 @@
 #include "cli/compress_held_out.h"
 #include "cli/compress_words.h"
 #include "compress/hold_out/hold_out.h"
-#include "inspect/model_report.h"
+#include "inspect/inspect.h"
 
 #include <limits.h>
 #include <math.h>

@@ -100,7 +100,7 @@ static weft_code prune_material(prune_command *command, weft_player *player, wef
     const weft_progress progress = weft_command_progress(&command->values.common);
     weft_mesh mesh;
     WEFT_TRY(weft_mesh_open(settings->mesh, &mesh, error));
-    const weft_reach_scene scene = {.mesh = &mesh,
+    const weft_prune_scene scene = {.mesh = &mesh,
                                     .path = command->path_file ? &command->path : NULL,
                                     .scene = settings->scene,
                                     .width = settings->width,

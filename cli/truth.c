@@ -2,7 +2,7 @@
 #include "capture/plan.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
-#include "compare/error_budget/sources.h"
+#include "compare/error_budget/error_budget.h"
 #include "compress/options/options.h"
 
 #include <limits.h>
@@ -15,8 +15,8 @@ typedef struct truth_command {
     weft_common_options common;
     int cloth_count, component_count; /* 0 components: as weft compress chooses */
     const char *cloth[MOST_CLOTHS], *rig_file;
-    weft_sources_request request;
-    weft_sources result[MOST_CLOTHS];
+    weft_error_budget_request request;
+    weft_error_budget result[MOST_CLOTHS];
 } truth_command;
 
 static weft_code read_cloth(const weft_option *option, const char *text, void *values, weft_error *error)
@@ -70,14 +70,14 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code say_result(const truth_command *command, const weft_sources *result, weft_error *error)
+static weft_code say_result(const truth_command *command, const weft_error_budget *result, weft_error *error)
 {
     const weft_error_stack *stack = &result->stack;
     weft_command_say(&command->common, "%-24s %6.2f %% %11.4f %12.4f %9.4f %9.4f %9.4f %6.2f %%", result->name,
                      100 * sqrt(fmax(stack->whole.value, 0)), stack->part[WEFT_SOURCE_DIRECTIONS].value,
                      stack->part[WEFT_SOURCE_REGISTRATION].value, stack->part[WEFT_SOURCE_MODEL].value,
                      stack->part[WEFT_SOURCE_STORAGE].value, stack->whole.value, 100 * stack->noise);
-    json_t *object = command->common.json ? weft_sources_to_json(result) : NULL;
+    json_t *object = command->common.json ? weft_error_budget_to_json(result) : NULL;
     weft_code code = object ? weft_command_describe(&command->common, "sources", object, error) : WEFT_OK;
     json_decref(object);
     return command->common.json && !object ? weft_fail_memory(error, "event", 0) : code;
@@ -89,8 +89,8 @@ static weft_code write_report(const truth_command *command, int count, weft_erro
     char path[PATH_MAX];
     if (snprintf(path, sizeof path, "%s/sources.csv", command->request.folder) >= (int)sizeof path)
         return weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", command->request.folder);
-    WEFT_TRY(weft_sources_write_csv(command->result, count, path, error));
-    return weft_sources_write_page(command->result, count, &command->request, error);
+    WEFT_TRY(weft_error_budget_write_csv(command->result, count, path, error));
+    return weft_error_budget_write_page(command->result, count, &command->request, error);
 }
 
 static weft_code measure_all(truth_command *command, weft_error *error)
@@ -101,7 +101,8 @@ static weft_code measure_all(truth_command *command, weft_error *error)
     weft_command_say(common, "%-24s %8s %11s %12s %9s %9s %9s %8s", "cloth", "rel.RMSE", "directions", "registration",
                      "model", "storage", "sum", "noise");
     for (int i = 0; i < command->cloth_count; i++) {
-        WEFT_TRY(weft_sources_measure(&command->request, command->cloth[i], &progress, &command->result[i], error));
+        WEFT_TRY(
+            weft_error_budget_measure(&command->request, command->cloth[i], &progress, &command->result[i], error));
         WEFT_TRY(say_result(command, &command->result[i], error));
         WEFT_TRY(write_report(command, i + 1, error));
     }
@@ -112,10 +113,10 @@ static weft_code measure_all(truth_command *command, weft_error *error)
 static int run(int argc, char **argv)
 {
     static truth_command command;
-    command.request = (weft_sources_request){.rig = weft_virtual_settings_default(),
-                                             .tiles = 2,
-                                             .chain = {.plan = "ubo81", .size = 32},
-                                             .queries = {.count = 2000, .paths = 64, .seed = 1}};
+    command.request = (weft_error_budget_request){.rig = weft_virtual_settings_default(),
+                                                  .tiles = 2,
+                                                  .chain = {.plan = "ubo81", .size = 32},
+                                                  .queries = {.count = 2000, .paths = 64, .seed = 1}};
     weft_arguments_parse(&weft_command_truth, argc, argv, &command);
     weft_error error = {0};
     weft_code code = WEFT_OK;

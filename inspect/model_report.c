@@ -1,4 +1,4 @@
-#include "inspect/model_report.h"
+#include "inspect/inspect.h"
 
 #include "base/picture/letters.h"
 #include "base/text/html_page.h"

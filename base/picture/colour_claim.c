@@ -1,6 +1,6 @@
 #include "base/picture/colour_claim.h"
 
-#include "base/picture/icc_profile.h"
+#include "base/picture/colour_space.h"
 
 #include <math.h>
 #include <stdio.h>

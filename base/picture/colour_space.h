@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 enum { WEFT_CURVE_STEPS = 4096 };
 
@@ -74,5 +75,15 @@ static inline float weft_curve_decode(const weft_curve *curve, float encoded)
 
 /* Turns linear values [count][3] into linear sRGB in place. Colours outside sRGB are below 0 or above 1. Pure. */
 void weft_colour_space_to_srgb(const weft_colour_space *space, float *rgb, size_t count);
+
+/* ---- Icc profile ---- */
+
+/* ICC profiles of curves and colorants (ICC.1:2010, the model of three components): what cameras, phones and converters
+ * of raw files write. The one door to Little CMS. */
+
+/* The space that a profile describes, with its name. Within rounding of sRGB it is sRGB. A profile of grey has one
+ * curve for all. False for a profile of tables, of other colours than RGB and grey, or a damaged one; then only the
+ * name is set, "" where there is none. Reads nothing outside of bytes [size]. Thread-safe. */
+bool weft_icc_profile_read(const uint8_t *bytes, size_t size, weft_colour_space *space);
 
 #endif

@@ -1,4 +1,4 @@
-#include "base/picture/exr_bridge.h"
+#include "base/picture/open_bridge.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "base/picture/icc_profile.h"
+#include "base/picture/colour_space.h"
 
 #include <lcms2.h>
 #include <math.h>

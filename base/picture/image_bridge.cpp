@@ -1,5 +1,4 @@
 #include "base/atomic_file.h"
-#include "base/picture/exr_bridge.h"
 #include "base/picture/image_library.h"
 #include "base/picture/open_bridge.h"
 

@@ -2,10 +2,10 @@
 #ifndef WEFT_BASE_PICTURE_OPEN_BRIDGE_H
 #define WEFT_BASE_PICTURE_OPEN_BRIDGE_H
 
+#include "base/picture/image.h"
 #include "base/status.h"
 
 #include <OpenImageIO/imageio.h>
-
 #include <memory>
 #include <string>
 
@@ -18,5 +18,18 @@ weft_code weft_image_unreadable(weft_error *error, const char *path, const std::
 /* Opens the file; `hints` may be NULL. NULL where it is no image: then the error says so, and *code. */
 std::unique_ptr<OIIO::ImageInput> weft_image_open(const char *path, const OIIO::ImageSpec *hints, weft_code *code,
                                                   weft_error *error);
+
+/* ---- Exr bridge ---- */
+
+/* What of an EXR file is the picture. Only EXR names its channels as it likes, and stores another rectangle than it
+ * shows. For the bridge alone. */
+
+/* The first of three channels that are red, green and blue: those of no layer, else those of the only layer. Errors:
+ * WEFT_BAD_INPUT, naming the channels, where there are none, or more than one layer of them. */
+weft_code weft_exr_colour_channels(const OIIO::ImageSpec &spec, const char *path, int *first, weft_error *error);
+
+/* Turns the pixels that are stored (the data window) into those that are shown (the display window): what lies outside
+ * is cut off, what is not stored is black. Errors: WEFT_SYSTEM for memory; then the picture is as it was. */
+weft_code weft_exr_show_window(const OIIO::ImageSpec &spec, weft_image *image, weft_error *error);
 
 #endif

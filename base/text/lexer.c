@@ -1,4 +1,4 @@
-#include "base/text/lexer.h"
+#include "base/text/block_parser.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -150,14 +150,14 @@ static size_t count_lines(const char *text)
 
 static weft_code read_lp_lines(weft_light_list *list, char *text, weft_error *error)
 {
-    double promised = -1;
+    double announced = -1;
     int number = 0, first = 0;
     for (char *rest = text; rest;) {
         char *line = trimmed(strsep(&rest, "\n"));
         number++;
         if (!*line || *line == '#')
             continue;
-        if (promised < 0 && !read_number(line, &promised))
+        if (announced < 0 && !read_number(line, &announced))
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: an .lp file begins with the number of its photographs",
                              list->path, number);
         if (!first)
@@ -165,9 +165,9 @@ static weft_code read_lp_lines(weft_light_list *list, char *text, weft_error *er
         else
             WEFT_TRY(read_lp_row(list, line, number, error));
     }
-    if (promised != list->count)
+    if (announced != list->count)
         return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: %g photographs are announced, but %d are listed", list->path,
-                         first, promised, list->count);
+                         first, announced, list->count);
     return WEFT_OK;
 }
 

@@ -13,7 +13,7 @@ static bool begins(const char *text, const char *start)
 }
 
 /* Up to the first stop, semicolon or bracket, or some words. */
-static void print_meaning(const char *help)
+static void print_help(const char *help)
 {
     size_t length = strcspn(help, ".;(:\n");
     if (length > MOST_MEANING)
@@ -156,7 +156,7 @@ static void print_option(void *context, const weft_option *option, const weft_se
     snprintf(name, sizeof name, "--%s", option->name);
     if (begins(name, start)) {
         fputs(name, stdout);
-        print_meaning(option->help);
+        print_help(option->help);
     }
 }
 

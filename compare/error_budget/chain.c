@@ -1,4 +1,4 @@
-#include "compare/error_budget/chain.h"
+#include "compare/error_budget/error_budget.h"
 
 #include "base/atomic_file.h"
 #include "capture/capture.h"

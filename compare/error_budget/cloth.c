@@ -1,4 +1,4 @@
-#include "compare/error_budget/cloth.h"
+#include "compare/error_budget/error_budget.h"
 
 #include "geometry/light/sample_sequence.h"
 

@@ -1,7 +1,6 @@
-#include "compare/error_budget/measure.h"
+#include "compare/error_budget/error_budget.h"
 
 #include "btf/dataset/dataset.h"
-#include "compare/error_budget/cloth.h"
 #include "evaluate/model.h"
 #include "evaluate/raw_directions.h"
 #include "geometry/light/sample_sequence.h"

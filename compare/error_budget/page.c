@@ -1,6 +1,6 @@
 /* The page: one stack for each cloth, and the numbers. */
 #include "base/text/html_page.h"
-#include "compare/error_budget/sources.h"
+#include "compare/error_budget/error_budget.h"
 
 #include <math.h>
 
@@ -23,18 +23,18 @@ static double place_on(const axis *x, double value)
 static void stack_ends(const weft_error_stack *stack, double *low, double *high)
 {
     *low = *high = 0;
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         *(stack->part[part].value < 0 ? low : high) += stack->part[part].value;
 }
 
-static axis fit_axis(const weft_sources *sources, int count)
+static axis fit_axis(const weft_error_budget *budget, int count)
 {
     axis x = {0, 1e-9, 0};
     for (int i = 0; i < count; i++) {
         double low, high;
-        stack_ends(&sources[i].stack, &low, &high);
+        stack_ends(&budget[i].stack, &low, &high);
         x.low = fmin(x.low, low);
-        x.high = fmax(fmax(x.high, high), sources[i].stack.whole.high);
+        x.high = fmax(fmax(x.high, high), budget[i].stack.whole.high);
     }
     double rough = (x.high - x.low) / 6, power = pow(10, floor(log10(rough)));
     x.step = power * (rough > 5 * power ? 10 : rough > 2 * power ? 5 : rough > power ? 2 : 1);
@@ -59,7 +59,7 @@ static void draw_grid(weft_page *page, const axis *x, int count)
 static void draw_key(weft_page *page)
 {
     fprintf(page->html, "<text x=\"%d\" y=\"20\">", LEFT);
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         fprintf(page->html, "<tspan class=\"key colour%d\">\u25a0</tspan> %s \u2003", part,
                 weft_error_source_name((weft_error_source)part));
     fputs("</text>\n", page->html);
@@ -88,30 +88,30 @@ static void draw_whole(weft_page *page, const axis *x, const weft_error_stack *s
             fmax(high, place_on(x, ends[1])) + 6, middle + 4, 100 * sqrt(fmax(stack->whole.value, 0)));
 }
 
-static void draw_stack(weft_page *page, const axis *x, const weft_sources *sources, double y)
+static void draw_stack(weft_page *page, const axis *x, const weft_error_budget *budget, double y)
 {
     double low = 0, high = 0;
     fprintf(page->html, "<text x=\"%d\" y=\"%.1f\">", LEFT, y - 7);
-    weft_page_text(page, sources->name);
+    weft_page_text(page, budget->name);
     fputs("</text>", page->html);
-    for (int part = 0; part < WEFT_SOURCES; part++) {
-        double value = sources->stack.part[part].value, *end = value < 0 ? &low : &high;
-        draw_part(page, x, &sources->stack, part, *end, y);
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++) {
+        double value = budget->stack.part[part].value, *end = value < 0 ? &low : &high;
+        draw_part(page, x, &budget->stack, part, *end, y);
         *end += value;
     }
-    draw_whole(page, x, &sources->stack, y);
+    draw_whole(page, x, &budget->stack, y);
 }
 
-static void put_plot(weft_page *page, const weft_sources *sources, int count)
+static void put_plot(weft_page *page, const weft_error_budget *budget, int count)
 {
-    axis x = fit_axis(sources, count);
+    axis x = fit_axis(budget, count);
     fprintf(page->html,
             "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"Where the error comes from\">\n",
             WIDTH, TOP + count * PITCH + BOTTOM);
     draw_key(page);
     draw_grid(page, &x, count);
     for (int i = 0; i < count; i++)
-        draw_stack(page, &x, &sources[i], TOP + (i + 1) * PITCH - BAR - 6);
+        draw_stack(page, &x, &budget[i], TOP + (i + 1) * PITCH - BAR - 6);
     fputs("</svg>\n", page->html);
 }
 
@@ -122,30 +122,30 @@ static void put_share(weft_page *page, const weft_source_share *share)
     fprintf(page->html, "<td title=\"%.3g to %.3g\">%.4f</td>", share->low, share->high, share->value);
 }
 
-static void put_row(weft_page *page, const weft_sources *s)
+static void put_row(weft_page *page, const weft_error_budget *s)
 {
     const weft_error_stack *stack = &s->stack;
     fputs("<tr><td>", page->html);
     weft_page_text(page, s->name);
     fprintf(page->html, "</td><td><b>%.1f %%</b></td><td>%.1f to %.1f %%</td>", 100 * sqrt(fmax(stack->whole.value, 0)),
             100 * sqrt(fmax(stack->whole.low, 0)), 100 * sqrt(fmax(stack->whole.high, 0)));
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         put_share(page, &stack->part[part]);
     put_share(page, &stack->whole);
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         fprintf(page->html, "<td>%.1f %%</td>", 100 * sqrt(fmax(stack->own[part], 0)));
     fprintf(page->html, "<td>%.1f %%</td><td>%zu</td><td>%d of %d</td><td>%.3g mm</td></tr>\n", 100 * stack->noise,
             stack->query_count, s->registered_count, s->photograph_count, s->opening_mm / s->size);
 }
 
-static void put_table(weft_page *page, const weft_sources *sources, int count)
+static void put_table(weft_page *page, const weft_error_budget *budget, int count)
 {
     fputs("<h2>Numbers</h2>\n<table class=\"long\">\n", page->html);
     weft_page_columns(page, ":cloth|relative RMSE|95 % interval|directions|registration|model|storage|sum|directions "
                             "changed|registration changed|model changed|storage changed|noise of the truth|queries|"
                             "photographs|texel");
     for (int i = 0; i < count; i++)
-        put_row(page, &sources[i]);
+        put_row(page, &budget[i]);
     fputs("</table>\n", page->html);
     fputs("<p class=\"note\">Parts and their sum are squares; their intervals show when pointed at, and stand in <a "
           "href=\"sources.csv\">sources.csv</a>. <i>Changed</i> is the RMS of what a stage changed, whether that made "
@@ -155,7 +155,7 @@ static void put_table(weft_page *page, const weft_sources *sources, int count)
           page->html);
 }
 
-static void put_summary(weft_page *page, const weft_sources *sources, const weft_sources_request *request)
+static void put_summary(weft_page *page, const weft_error_budget *budget, const weft_error_budget_request *request)
 {
     fprintf(
         page->html,
@@ -164,11 +164,11 @@ static void put_summary(weft_page *page, const weft_sources *sources, const weft
         "by %d components and stored. Then %d places, lights and views were drawn at random, evenly in solid angle up "
         "to %.0f\u00b0 from the normal. The number beside a stack is the relative RMSE; the stack is its "
         "square.</p>\n",
-        sources->photograph_count, sources->size, sources->size, sources->component_count, request->queries.count,
-        weft_deg_of_rad(sources->span.theta_rad));
+        budget->photograph_count, budget->size, budget->size, budget->component_count, request->queries.count,
+        weft_deg_of_rad(budget->span.theta_rad));
 }
 
-static void put_meaning(weft_page *page)
+static void put_explanation(weft_page *page)
 {
     fputs(
         "<ul>\n<li><b>directions</b>: the exact samples of the cloth in the photographed directions, "
@@ -182,14 +182,14 @@ static void put_meaning(weft_page *page)
         page->html);
 }
 
-weft_code weft_sources_write_page(const weft_sources *sources, int count, const weft_sources_request *request,
-                                  weft_error *error)
+weft_code weft_error_budget_write_page(const weft_error_budget *budget, int count,
+                                       const weft_error_budget_request *request, weft_error *error)
 {
     weft_page page;
     WEFT_TRY(weft_page_begin(request->folder, "Where the error comes from", &page, error));
-    put_summary(&page, sources, request);
-    put_plot(&page, sources, count);
-    put_meaning(&page);
-    put_table(&page, sources, count);
+    put_summary(&page, budget, request);
+    put_plot(&page, budget, count);
+    put_explanation(&page);
+    put_table(&page, budget, count);
     return weft_page_finish(&page, error);
 }

@@ -1,4 +1,4 @@
-#include "compare/error_budget/stack.h"
+#include "compare/error_budget/error_budget.h"
 
 #include "base/numeric/statistics.h"
 #include "geometry/light/sample_sequence.h"
@@ -10,12 +10,12 @@ enum { DRAWS = 1000 };
 
 /* Sums over queries, of which ratios are taken. */
 typedef struct sums {
-    double energy, error[WEFT_SOURCES]; /* of s, r, m and f */
+    double energy, error[WEFT_SOURCE_COUNT]; /* of s, r, m and f */
 } sums;
 
 const char *weft_error_source_name(weft_error_source source)
 {
-    static const char *const name[WEFT_SOURCES] = {"directions", "registration", "model", "storage"};
+    static const char *const name[WEFT_SOURCE_COUNT] = {"directions", "registration", "model", "storage"};
     return name[source];
 }
 
@@ -25,7 +25,7 @@ static void add_channel(const weft_source_answer *a, int c, sums *sum)
     const double later[] = {a->registered[c], a->fitted[c], a->stored[c]};
     sum->energy += t[0] * t[1];
     sum->error[0] += (a->sampled[0][c] - t[0]) * (a->sampled[1][c] - t[1]);
-    for (int stage = 1; stage < WEFT_SOURCES; stage++)
+    for (int stage = 1; stage < WEFT_SOURCE_COUNT; stage++)
         sum->error[stage] += (later[stage - 1] - t[0]) * (later[stage - 1] - t[1]);
 }
 
@@ -40,15 +40,15 @@ static sums sums_of(const weft_source_answer *answer)
 static void add(const sums *from, sums *to)
 {
     to->energy += from->energy;
-    for (int stage = 0; stage < WEFT_SOURCES; stage++)
+    for (int stage = 0; stage < WEFT_SOURCE_COUNT; stage++)
         to->error[stage] += from->error[stage];
 }
 
 /* Of the parts, and last of the whole. */
 static double share_of(const sums *sum, int part)
 {
-    if (part == 0 || part == WEFT_SOURCES)
-        return sum->error[part == 0 ? 0 : WEFT_SOURCES - 1] / sum->energy;
+    if (part == 0 || part == WEFT_SOURCE_COUNT)
+        return sum->error[part == 0 ? 0 : WEFT_SOURCE_COUNT - 1] / sum->energy;
     return (sum->error[part] - sum->error[part - 1]) / sum->energy;
 }
 
@@ -79,10 +79,10 @@ static weft_code find_shares(const sums *query, const sums *all, uint64_t seed, 
     weft_code code = draw && drawn ? WEFT_OK : weft_fail_memory(error, "draws", DRAWS * sizeof *draw);
     for (uint64_t i = 0; code == WEFT_OK && i < DRAWS; i++)
         draw[i] = draw_again(query, stack->query_count, weft_sequence_key(seed, i));
-    for (int part = 0; code == WEFT_OK && part < WEFT_SOURCES; part++)
+    for (int part = 0; code == WEFT_OK && part < WEFT_SOURCE_COUNT; part++)
         stack->part[part] = share_with_interval(all, draw, part, drawn);
     if (code == WEFT_OK)
-        stack->whole = share_with_interval(all, draw, WEFT_SOURCES, drawn);
+        stack->whole = share_with_interval(all, draw, WEFT_SOURCE_COUNT, drawn);
     free(draw);
     free(drawn);
     return code;
@@ -90,7 +90,7 @@ static weft_code find_shares(const sums *query, const sums *all, uint64_t seed, 
 
 /* ---- What each stage changed, and the noise ---- */
 
-static void add_own(const weft_source_answer *a, int c, double own[WEFT_SOURCES], double *noise)
+static void add_own(const weft_source_answer *a, int c, double own[WEFT_SOURCE_COUNT], double *noise)
 {
     double apart = a->cloth[0][c] - a->cloth[1][c];
     own[0] += (a->sampled[0][c] - a->cloth[0][c]) * (a->sampled[1][c] - a->cloth[1][c]);
@@ -106,7 +106,7 @@ static void find_own(const weft_source_answer *answer, double energy, weft_error
     for (size_t i = 0; i < stack->query_count; i++)
         for (int c = 0; c < 3; c++)
             add_own(&answer[i], c, stack->own, &noise);
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         stack->own[part] /= energy;
     stack->noise = sqrt(noise / energy);
 }

@@ -1,7 +1,7 @@
 /* The stacks as JSON and as comma-separated values. */
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
-#include "compare/error_budget/sources.h"
+#include "compare/error_budget/error_budget.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,18 +22,18 @@ static json_t *json_of_part(const weft_error_stack *stack, int part)
     return object;
 }
 
-json_t *weft_sources_to_json(const weft_sources *sources)
+json_t *weft_error_budget_to_json(const weft_error_budget *budget)
 {
-    const weft_error_stack *stack = &sources->stack;
+    const weft_error_stack *stack = &budget->stack;
     json_t *object =
         json_pack("{s:o, s:f, s:i, s:i, s:i, s:i, s:f, s:I, s:i, s:f, s:f}", "cloth",
-                  weft_json_text(sources->name, strlen(sources->name)), "opening_mm", sources->opening_mm, "size",
-                  sources->size, "photographs", sources->photograph_count, "registered", sources->registered_count,
-                  "components", sources->component_count, "outermost_deg", weft_deg_of_rad(sources->span.theta_rad),
-                  "queries", (json_int_t)stack->query_count, "queries_unseen", sources->span.unseen, "relative_rmse",
+                  weft_json_text(budget->name, strlen(budget->name)), "opening_mm", budget->opening_mm, "size",
+                  budget->size, "photographs", budget->photograph_count, "registered", budget->registered_count,
+                  "components", budget->component_count, "outermost_deg", weft_deg_of_rad(budget->span.theta_rad),
+                  "queries", (json_int_t)stack->query_count, "queries_unseen", budget->span.unseen, "relative_rmse",
                   sqrt(fmax(stack->whole.value, 0)), "noise_of_truth", stack->noise);
     weft_json_put(&object, "squared_relative_error", json_of_share(&stack->whole));
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         weft_json_put(&object, weft_error_source_name((weft_error_source)part), json_of_part(stack, part));
     return object;
 }
@@ -47,24 +47,23 @@ static void print_name(const char *text, FILE *table)
         fputc(*text == ',' ? ';' : *text, table);
 }
 
-static void print_row(const weft_sources *sources, const char *source, const weft_source_share *share, double changed,
-                      FILE *table)
+static void print_row(const weft_error_budget *budget, const char *source, const weft_source_share *share,
+                      double changed, FILE *table)
 {
-    print_name(sources->name, table);
+    print_name(budget->name, table);
     fprintf(table, ",%s,%.6g,%.6g,%.6g,%.6g,%zu,%.4g\n", source, share->value, share->low, share->high, changed,
-            sources->stack.query_count, sources->stack.noise);
+            budget->stack.query_count, budget->stack.noise);
 }
 
-static void print_rows(const weft_sources *sources, FILE *table)
+static void print_rows(const weft_error_budget *budget, FILE *table)
 {
-    const weft_error_stack *stack = &sources->stack;
-    for (int part = 0; part < WEFT_SOURCES; part++)
-        print_row(sources, weft_error_source_name((weft_error_source)part), &stack->part[part], stack->own[part],
-                  table);
-    print_row(sources, "whole", &stack->whole, stack->whole.value, table);
+    const weft_error_stack *stack = &budget->stack;
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
+        print_row(budget, weft_error_source_name((weft_error_source)part), &stack->part[part], stack->own[part], table);
+    print_row(budget, "whole", &stack->whole, stack->whole.value, table);
 }
 
-weft_code weft_sources_write_csv(const weft_sources *sources, int count, const char *path, weft_error *error)
+weft_code weft_error_budget_write_csv(const weft_error_budget *budget, int count, const char *path, weft_error *error)
 {
     char *bytes = NULL;
     size_t size = 0;
@@ -73,7 +72,7 @@ weft_code weft_sources_write_csv(const weft_sources *sources, int count, const c
         return weft_fail_memory(error, "table", 0);
     fputs("cloth,source,squared_relative_error,low,high,changed,queries,noise_of_truth\n", table);
     for (int i = 0; i < count; i++)
-        print_rows(&sources[i], table);
+        print_rows(&budget[i], table);
     weft_code code =
         fclose(table) == 0 ? weft_write_file(path, bytes, size, error) : weft_fail_memory(error, "table", size);
     free(bytes);

@@ -1,5 +1,5 @@
 /* The analytic cloth of a comparison: read as it is, or fitted to the dataset first. */
-#include "compare/report/analytic.h"
+#include "compare/report/compare.h"
 
 #include "base/atomic_file.h"
 #include "btf/file_kind.h"

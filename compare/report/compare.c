@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "btf/dataset/fingerprint.h"
-#include "compare/report/analytic.h"
 #include "compare/report/page/sections.h"
 #include "geometry/stitch/stitch.h"
 

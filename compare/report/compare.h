@@ -2,14 +2,91 @@
 #ifndef WEFT_COMPARE_REPORT_COMPARE_H
 #define WEFT_COMPARE_REPORT_COMPARE_H
 
+#include "base/numeric/error_summary.h"
+#include "base/picture/image.h"
 #include "base/progress.h"
+#include "btf/dataset/dataset.h"
 #include "btf/material/held_out.h"
-#include "compare/report/leave_one_out.h"
-#include "compare/report/scenes.h"
+#include "btf/material/material.h"
 #include "compare/report/slices.h"
 #include "compare/truth/comparison.h"
 #include "compress/weave_fit/fit_weave.h"
 #include "evaluate/error/measurement.h"
+#include "player/draw/player.h"
+#include "reflectance/microcylinder/file.h"
+
+/* ---- Leave one out ---- */
+
+/* How well a fit predicts a photograph it has not seen. */
+
+/* One photograph, predicted by a material fitted to all the others. */
+typedef struct weft_left_out {
+    weft_image_pair pair;
+    char name[64];            /* of the photograph's file, else "image N" */
+    weft_error_summary error; /* over all channels of its valid samples */
+} weft_left_out;
+
+/* Freed with weft_leave_one_out_free. */
+typedef struct weft_leave_one_out {
+    int count, capacity;
+    weft_left_out *photograph; /* [capacity], the first `count` in use: those with any valid sample */
+    double mean_relative_rmse, mean_median_relative; /* of the photographs */
+    double seconds;                                  /* of all fits together */
+} weft_leave_one_out;
+
+/* Fits a material to all images but one, for each in turn, and compares its prediction with that image. The fits use
+ * the defaults of weft_compress, without mip levels. Errors: those of reading and fitting. */
+weft_code weft_leave_one_out_measure(weft_dataset *dataset, const weft_progress *progress, weft_leave_one_out *result,
+                                     weft_error *error);
+void weft_leave_one_out_free(weft_leave_one_out *result);
+
+/* ---- Scenes ---- */
+
+/* The same scenes drawn from the dataset, the material and the analytic cloth. */
+
+/* What is drawn: the modes of the player, and BARD as a dataset in mode raw. */
+enum { WEFT_SCENE_COUNT = 3, WEFT_SCENE_BARD = WEFT_MODE_COUNT, WEFT_SCENE_MODELS };
+
+/* "raw", "compressed", "analytic", "BARD". Pure. */
+const char *weft_scenes_model_name(int model);
+
+/* One scene: linear pictures by model, those of absent models empty. */
+typedef struct weft_scene_pictures {
+    const char *caption;
+    weft_image picture[WEFT_SCENE_MODELS];
+    weft_error_summary error[WEFT_SCENE_MODELS]; /* against raw, over the lit pixels of the mesh */
+} weft_scene_pictures;
+
+/* Freed with weft_scenes_free. */
+typedef struct weft_scenes {
+    bool drawn; /* false where there is no OpenGL: `why_not` says so */
+    char why_not[WEFT_MESSAGE_SIZE];
+    char renderer[128]; /* name of the OpenGL driver's renderer */
+    bool has[WEFT_SCENE_MODELS];
+    int width, height;                  /* of the pictures, pixels */
+    bool has_heights;                   /* the dataset is drawn through its heights */
+    bool near_lights;                   /* the dataset is then drawn with the directions of its centre */
+    int skipped_levels;                 /* finest levels of the dataset that did not fit into graphics memory */
+    double frame_ms[WEFT_SCENE_MODELS]; /* of the first scene; 0 for BARD, which is drawn as raw is */
+    weft_scene_pictures scene[WEFT_SCENE_COUNT];
+} weft_scenes;
+
+/* What to draw; `weave`, `threads` (one of them at most) and `bard` may be NULL. */
+typedef struct weft_scenes_request {
+    weft_dataset *dataset;
+    const weft_material *material;
+    const weft_weave *weave;
+    const weft_weave_layout *layout; /* of the weave on the material */
+    const weft_microcylinder_cloth *threads;
+    const char *bard; /* a dataset as `weft bard` writes it */
+    int side;         /* of the pictures, pixels */
+} weft_scenes_request;
+
+/* Draws without a window. Having no OpenGL is not an error. Errors: WEFT_BAD_INPUT from reading a dataset;
+ * WEFT_SYSTEM. */
+weft_code weft_scenes_draw(const weft_scenes_request *request, const weft_progress *progress, weft_scenes *scenes,
+                           weft_error *error);
+void weft_scenes_free(weft_scenes *scenes);
 
 typedef struct weft_compare_options {
     const char *dataset;     /* NAME.btf.h5 */
@@ -62,5 +139,25 @@ typedef struct weft_comparison {
 weft_code weft_compare(const weft_compare_options *options, const weft_progress *progress, weft_comparison *comparison,
                        weft_error *error);
 void weft_comparison_free(weft_comparison *comparison);
+
+/* ---- Analytic ---- */
+
+/* The analytic cloth of weft_compare. Private to the room. */
+
+/* Empty without a weave. Freed with weft_compare_weave_close, also after failure. */
+typedef struct weft_compared_weave {
+    char *path; /* of the file that is compared: the given or the fitted one */
+    bool is_threads;
+    weft_weave weave;                       /* a weave */
+    weft_microcylinder_description threads; /* or microcylinder cloth */
+} weft_compared_weave;
+
+/* Reads options->weave, a weave fitted to the dataset first where options->fit; then folder/fitted.wv is written. Fills
+ * what the comparison tells of it: weave_name to weave_on_yarns. Errors: those of reading, fitting and writing;
+ * WEFT_BAD_USAGE for microcylinder cloth to be fitted. */
+weft_code weft_compare_weave_open(const weft_compare_options *options, weft_dataset *dataset,
+                                  const weft_progress *progress, weft_compared_weave *weave,
+                                  weft_comparison *comparison, weft_error *error);
+void weft_compare_weave_close(weft_compared_weave *weave);
 
 #endif

@@ -1,4 +1,4 @@
-#include "compare/report/contender.h"
+#include "compare/report/slices.h"
 
 #include <math.h>
 #include <stdlib.h>

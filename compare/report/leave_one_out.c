@@ -1,4 +1,4 @@
-#include "compare/report/leave_one_out.h"
+#include "compare/report/compare.h"
 
 #include "btf/dataset/dataset.h"
 #include "compress/compress.h"

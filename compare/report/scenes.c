@@ -1,4 +1,4 @@
-#include "compare/report/scenes.h"
+#include "compare/report/compare.h"
 
 #include "compare/pictures/frame_time.h"
 #include "compare/pictures/visible_error.h"

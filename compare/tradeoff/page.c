@@ -220,7 +220,7 @@ static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
     put_name(page, row, number);
     put_number(page, "%.0f", price->bytes, true);
     put_errors(page, &row->measured);
-    put_number(page, "%.3f", price->strobing, price->has_strobing);
+    put_number(page, "%.3f", price->flicker, price->has_flicker);
     put_number(page, "%.1f", price->fit_s, is_fitted);
     put_number(page, "%.1f", price->frame_ms, price->frame_ms > 0);
     put_number(page, "%.1f", price->large_frame_ms, price->large_frame_ms > 0);
@@ -238,7 +238,7 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
     weft_page_columns(
         page, "|:model|bytes|error, not fitted|fitted|95 % interval|median|80th "
               "percentile|grazing|highlights|shadows|PSNR dB|"
-              "SSIM|FLIP|strobing|fit, s|ms a frame|ms at 1080p|evaluations/s|reads a pixel|bytes a pixel|bits a texel|"
+              "SSIM|FLIP|flicker|fit, s|ms a frame|ms at 1080p|evaluations/s|reads a pixel|bytes a pixel|bits a texel|"
               "photographs|:weft compress");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
@@ -251,7 +251,7 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
           "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
           "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
           "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
-          "of an interval that held so many of these samples, in parts of the mean sample. Strobing: while a light "
+          "of an interval that held so many of these samples, in parts of the mean sample. Flicker: while a light "
           "sweeps "
           "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
           "BARD, "

@@ -5,8 +5,8 @@
 #include "btf/direction/direction.h"
 #include "btf/material/metadata.h"
 #include "compare/tradeoff/cloth.h"
+#include "compare/tradeoff/flicker.h"
 #include "compare/tradeoff/frame_timer.h"
-#include "compare/tradeoff/strobing.h"
 #include "compare/tradeoff/weight.h"
 #include "compress/bard/texels.h"
 #include "compress/compress.h"
@@ -154,7 +154,7 @@ static weft_code time_evaluations(weft_model *model, double *per_second, weft_er
     return code;
 }
 
-/* How fast the model in a file is evaluated, and how much it strobes. */
+/* How fast the model in a file is evaluated, and how much it flickers. */
 static weft_code evaluate(const char *path, bool through_heights, weft_price *price, weft_error *error)
 {
     const weft_model_options options = {.flat = !through_heights};
@@ -162,8 +162,8 @@ static weft_code evaluate(const char *path, bool through_heights, weft_price *pr
     WEFT_TRY(weft_model_open(path, &options, &model, error));
     weft_code code = time_evaluations(model, &price->evaluations_a_second, error);
     if (code == WEFT_OK)
-        code = weft_strobing_measure(model, &price->strobing, error);
-    price->has_strobing = code == WEFT_OK;
+        code = weft_flicker_measure(model, &price->flicker, error);
+    price->has_flicker = code == WEFT_OK;
     weft_model_close(model);
     return code;
 }

@@ -15,8 +15,8 @@ typedef struct weft_price {
     double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD, which nothing plays */
     double large_frame_ms;       /* 1920 x 1080 pixels */
     weft_fetches fetches;        /* of a pixel; 0 for BARD and microcylinder cloth */
-    bool has_strobing;           /* of BARD there is none */
-    double strobing;             /* compare/tradeoff/strobing.h */
+    bool has_flicker;            /* of BARD there is none */
+    double flicker;              /* compare/tradeoff/flicker.h */
 } weft_price;
 
 /* A shop that fits all of the texels of a dataset, or the middle ones. */

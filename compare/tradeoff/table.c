@@ -79,8 +79,8 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
         weft_json_put(&object, "frame_ms", json_real(price->frame_ms));
     if (price->large_frame_ms > 0)
         weft_json_put(&object, "frame_1080p_ms", json_real(price->large_frame_ms));
-    if (price->has_strobing)
-        weft_json_put(&object, "strobing", json_real(price->strobing));
+    if (price->has_flicker)
+        weft_json_put(&object, "flicker", json_real(price->flicker));
     weft_json_put(&object, "not_fitted", json_of_errors(m->held));
     weft_json_put(&object, "fitted", json_of_errors(m->fitted));
     weft_json_put(&object, "interval_width", json_real(m->interval_width));
@@ -135,8 +135,8 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
     }
     fprintf(table, ",%.5g,%.5g,%.5g,%.5g,", m->quality[0].psnr_db, m->quality[0].ssim, m->quality[0].flip,
             m->interval_width);
-    if (price->has_strobing)
-        fprintf(table, "%.4g", price->strobing);
+    if (price->has_flicker)
+        fprintf(table, "%.4g", price->flicker);
     for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++)
         print_quality(&m->quality[kind], m->picture_pixels[kind] > 0, table);
     fputc('\n', table);
@@ -153,7 +153,7 @@ static void print_table(const weft_tradeoff *tradeoff, FILE *table)
         const char *kind = weft_sample_kind_name((weft_sample_kind)(i % WEFT_SAMPLE_KINDS));
         fprintf(table, ",%s_%s_relative_rmse,%s_%s_median,%s_%s_percentile80", of, kind, of, kind, of, kind);
     }
-    fputs(",psnr_db,ssim,flip,interval_width,strobing", table);
+    fputs(",psnr_db,ssim,flip,interval_width,flicker", table);
     for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++) {
         const char *name = weft_sample_kind_name((weft_sample_kind)kind);
         fprintf(table, ",%s_psnr_db,%s_ssim,%s_flip", name, name, name);

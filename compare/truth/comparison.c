@@ -1,6 +1,5 @@
 #include "compare/truth/comparison.h"
 
-#include "compare/truth/trace.h"
 #include "geometry/drape/draped_cloth.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"

@@ -1,4 +1,4 @@
-#include "compare/truth/picture_error.h"
+#include "compare/truth/comparison.h"
 
 #include "compare/pictures/visible_error.h"
 

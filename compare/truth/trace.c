@@ -1,4 +1,4 @@
-#include "compare/truth/trace.h"
+#include "compare/truth/comparison.h"
 
 #include "geometry/light/sample_sequence.h"
 

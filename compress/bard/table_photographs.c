@@ -1,4 +1,4 @@
-#include "compress/bard/table_photographs.h"
+#include "compress/bard/texel_table.h"
 
 #include "btf/direction/direction.h"
 

@@ -4,7 +4,7 @@
 #include "compress/hold_out/certify.h"
 #include "compress/hold_out/mean_error.h"
 #include "compress/hold_out/measured_texels.h"
-#include "compress/hold_out/misplaced.h"
+#include "compress/hold_out/registration_error.h"
 #include "compress/hold_out/rounding.h"
 #include "compress/hold_out/trial.h"
 

@@ -1,4 +1,4 @@
-#include "compress/weave_fit/mean_brdf.h"
+#include "compress/weave_fit/fit_weave.h"
 
 #include "btf/dataset/read_blocks.h"
 

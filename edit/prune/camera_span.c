@@ -1,4 +1,4 @@
-#include "edit/prune/camera_span.h"
+#include "edit/prune/visibility_bounds.h"
 
 static double middle(double low, double high)
 {
@@ -28,8 +28,8 @@ static double shift_of(const weft_orbit *low, const weft_orbit *high)
 {
     double change =
         (high->distance - low->distance + high->pan_right - low->pan_right + high->pan_up - low->pan_up) / 2;
-    double reach = high->distance + farther(low->pan_right, high->pan_right) + farther(low->pan_up, high->pan_up);
-    return change + reach * turn_of(low, high);
+    double visibility = high->distance + farther(low->pan_right, high->pan_right) + farther(low->pan_up, high->pan_up);
+    return change + visibility * turn_of(low, high);
 }
 
 /* A colatitude and an azimuth move a direction by no more than their sum. */

@@ -1,4 +1,4 @@
-#include "edit/prune/images.h"
+#include "edit/prune/steps.h"
 
 #include "btf/direction/square_map.h"
 
@@ -15,24 +15,25 @@ static weft_vec3 direction_at(const float *xyz, size_t index)
 /* Cells of the coarser square within an angle of a direction. */
 typedef struct cell_list {
     int count;
-    int cell[WEFT_REACH_PAIR_CELLS];
+    int cell[WEFT_VISIBILITY_PAIR_CELLS];
 } cell_list;
 
 static weft_vec3 middle_of(int cell)
 {
-    double a = 2 * ((cell % WEFT_REACH_PAIR_SIDE + 0.5) / WEFT_REACH_PAIR_SIDE - 0.5);
-    double b = 2 * ((int)(cell / WEFT_REACH_PAIR_SIDE) + 0.5) / WEFT_REACH_PAIR_SIDE - 1, square = a * a + b * b;
+    double a = 2 * ((cell % WEFT_VISIBILITY_PAIR_SIDE + 0.5) / WEFT_VISIBILITY_PAIR_SIDE - 0.5);
+    double b = 2 * ((int)(cell / WEFT_VISIBILITY_PAIR_SIDE) + 0.5) / WEFT_VISIBILITY_PAIR_SIDE - 1,
+           square = a * a + b * b;
     return weft_vec3_of(2 * a / (1 + square), 2 * b / (1 + square), (1 - square) / (1 + square));
 }
 
 /* Half the diagonal of a cell, where the square shrinks most. */
-static const double cell_radius = 4 * 0.7071067811865476 / WEFT_REACH_PAIR_SIDE;
+static const double cell_radius = 4 * 0.7071067811865476 / WEFT_VISIBILITY_PAIR_SIDE;
 
 static void list_cells(weft_vec3 direction, double margin_rad, cell_list *list)
 {
     double least = cos(fmin(margin_rad + cell_radius, WEFT_PI));
     list->count = 0;
-    for (int cell = 0; cell < WEFT_REACH_PAIR_CELLS; cell++)
+    for (int cell = 0; cell < WEFT_VISIBILITY_PAIR_CELLS; cell++)
         if (weft_dot(middle_of(cell), direction) >= least)
             list->cell[list->count++] = cell;
 }
@@ -43,40 +44,40 @@ static weft_vec3 inner_direction(const weft_components *components, weft_vec3 li
     return components->kind == WEFT_COMPONENTS_OF_LIGHT ? light : weft_unit(weft_add(light, view));
 }
 
-/* Whether a pair of the reach has one of the views, and within an angle of `inner` what maps are of. */
-static bool is_reached(const weft_reach *reach, const weft_components *components, const cell_list *views,
+/* Whether a pair of the visibility has one of the views, and within an angle of `inner` what maps are of. */
+static bool is_reached(const weft_visibility *visibility, const weft_components *components, const cell_list *views,
                        weft_vec3 inner, double least)
 {
     for (int v = 0; v < views->count; v++) {
-        const uint8_t *row = reach->pair + (size_t)views->cell[v] * WEFT_REACH_PAIR_CELLS;
+        const uint8_t *row = visibility->pair + (size_t)views->cell[v] * WEFT_VISIBILITY_PAIR_CELLS;
         weft_vec3 view = middle_of(views->cell[v]);
-        for (int l = 0; l < WEFT_REACH_PAIR_CELLS; l++)
+        for (int l = 0; l < WEFT_VISIBILITY_PAIR_CELLS; l++)
             if (row[l] && weft_dot(inner_direction(components, middle_of(l), view), inner) >= least)
                 return true;
     }
     return false;
 }
 
-static void find_of_view(const weft_reach *reach, const weft_components *components, int view, double margin_rad,
-                         cell_list *list, bool *kept)
+static void find_of_view(const weft_visibility *visibility, const weft_components *components, int view,
+                         double margin_rad, cell_list *list, bool *kept)
 {
     weft_vec3 v = direction_at(components->view, (size_t)view);
     double least = cos(fmin(margin_rad + cell_radius, WEFT_PI));
     list_cells(v, margin_rad, list);
     for (uint32_t i = components->first[view]; i < components->first[view + 1]; i++)
-        kept[i] = is_reached(reach, components, list,
+        kept[i] = is_reached(visibility, components, list,
                              inner_direction(components, direction_at(components->light, i), v), least);
 }
 
-weft_code weft_prune_find_images(const weft_reach *reach, const weft_components *components, double margin_rad,
-                                 bool *kept, int *kept_count, weft_error *error)
+weft_code weft_prune_find_images(const weft_visibility *visibility, const weft_components *components,
+                                 double margin_rad, bool *kept, int *kept_count, weft_error *error)
 {
     cell_list *list = calloc(1, sizeof *list);
     if (!list)
         return weft_fail_memory(error, "cells", sizeof *list);
     *kept_count = 0;
     for (int view = 0; view < components->view_count; view++)
-        find_of_view(reach, components, view, margin_rad, list, kept);
+        find_of_view(visibility, components, view, margin_rad, list, kept);
     for (int i = 0; i < components->image_count; i++)
         *kept_count += kept[i];
     free(list);

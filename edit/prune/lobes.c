@@ -1,10 +1,10 @@
-#include "edit/prune/lobes.h"
+#include "edit/prune/steps.h"
 
 #include <string.h>
 
 /* l' . diag(C) . v' in the frame of the texel is l . M . v in that of the surface, with M = sum_k C_k axis_k axis_k^T.
  */
-static double largest_argument(const weft_reach *reach, const weft_frame *frame, const double c[4])
+static double largest_argument(const weft_visibility *visibility, const weft_frame *frame, const double c[4])
 {
     const weft_vec3 axis[3] = {frame->tangent, frame->bitangent, frame->normal};
     double m[3][3] = {{0}}, sum = 0;
@@ -14,16 +14,16 @@ static double largest_argument(const weft_reach *reach, const weft_frame *frame,
             m[i / 3][i % 3] += c[k] * a[i / 3] * a[i % 3];
     }
     for (int i = 0; i < 9; i++) {
-        const double *range = reach->product[i / 3][i % 3];
+        const double *range = visibility->product[i / 3][i % 3];
         sum += fmax(m[i / 3][i % 3] * range[0], m[i / 3][i % 3] * range[1]);
     }
     /* No two unit vectors make more of it than its largest coefficient. */
     return fmin(sum, fmax(fabs(c[0]), fmax(fabs(c[1]), fabs(c[2]))));
 }
 
-double weft_lobe_bound(const weft_reach *reach, const weft_frame *frame, const double c[4])
+double weft_lobe_bound(const weft_visibility *visibility, const weft_frame *frame, const double c[4])
 {
-    double argument = largest_argument(reach, frame, c);
+    double argument = largest_argument(visibility, frame, c);
     return c[3] > 0 ? pow(fmax(argument, 0), c[3]) : argument < 0 ? 0 : 1;
 }
 
@@ -38,7 +38,8 @@ static bool is_there(const weft_half *code)
     return (code[0] | code[1] | code[2]) != 0;
 }
 
-static double bound_of_texel(const weft_reach *reach, const weft_material_level *level, int lobe, size_t texel)
+static double bound_of_texel(const weft_visibility *visibility, const weft_material_level *level, int lobe,
+                             size_t texel)
 {
     weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
     double most = 0;
@@ -47,7 +48,7 @@ static double bound_of_texel(const weft_reach *reach, const weft_material_level 
         double c[4];
         for (int i = 0; i < 4; i++)
             c[i] = (double)weft_float_of_half(code[i]);
-        most = fmax(most, weft_lobe_bound(reach, &frame, c));
+        most = fmax(most, weft_lobe_bound(visibility, &frame, c));
     }
     return most;
 }
@@ -60,8 +61,8 @@ static void take_away(const weft_material_level *level, int lobe, size_t texel)
 }
 
 /* *some: a texel still has the lobe. */
-static void prune_lobe(const weft_reach *reach, double least, const weft_material *material, int lobe, long *count,
-                       bool *some)
+static void prune_lobe(const weft_visibility *visibility, double least, const weft_material *material, int lobe,
+                       long *count, bool *some)
 {
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
@@ -69,7 +70,7 @@ static void prune_lobe(const weft_reach *reach, double least, const weft_materia
         for (size_t i = 0; i < texels; i++) {
             bool had = is_there(lobe_at(level, lobe, 0, i)) || is_there(lobe_at(level, lobe, 1, i)) ||
                        is_there(lobe_at(level, lobe, 2, i));
-            if (had && bound_of_texel(reach, level, lobe, i) <= least) {
+            if (had && bound_of_texel(visibility, level, lobe, i) <= least) {
                 take_away(level, lobe, i);
                 ++*count;
                 had = false;
@@ -79,13 +80,13 @@ static void prune_lobe(const weft_reach *reach, double least, const weft_materia
     }
 }
 
-void weft_prune_lobes(const weft_reach *reach, double least, weft_material *material, long *count)
+void weft_prune_lobes(const weft_visibility *visibility, double least, weft_material *material, long *count)
 {
     bool is_last = true;
     *count = 0;
     for (int lobe = material->lobe_count - 1; lobe >= 0; lobe--) {
         bool some = false;
-        prune_lobe(reach, least, material, lobe, count, &some);
+        prune_lobe(visibility, least, material, lobe, count, &some);
         is_last = is_last && !some;
         if (is_last)
             material->lobe_count = lobe;

@@ -1,4 +1,4 @@
-#include "edit/prune/pictures.h"
+#include "edit/prune/steps.h"
 
 #include "compare/pictures/picture_quality.h"
 #include "player/draw/canvas.h"
@@ -8,7 +8,7 @@
 enum { MOST_SAMPLES = 3 };
 
 /* The compressed material alone, without what is drawn over it. */
-static weft_scene scene_at(const weft_reach_scene *s, double time_s)
+static weft_scene scene_at(const weft_prune_scene *s, double time_s)
 {
     weft_scene scene = s->scene;
     scene.layout = WEFT_LAYOUT_PANES;
@@ -21,7 +21,7 @@ static weft_scene scene_at(const weft_reach_scene *s, double time_s)
 }
 
 /* A few frames on a grid within each pixel: of the levels of the picture that they are a part of. */
-static weft_code add_frames(weft_player *player, const weft_reach_scene *s, const weft_scene *scene,
+static weft_code add_frames(weft_player *player, const weft_prune_scene *s, const weft_scene *scene,
                             weft_canvas *canvas, weft_error *error)
 {
     int side = s->samples < MOST_SAMPLES ? s->samples : MOST_SAMPLES;
@@ -38,7 +38,7 @@ static weft_code add_frames(weft_player *player, const weft_reach_scene *s, cons
     return WEFT_OK;
 }
 
-static weft_code draw_frames(weft_player *player, const weft_reach_scene *s, const weft_scene *scene, weft_image *image,
+static weft_code draw_frames(weft_player *player, const weft_prune_scene *s, const weft_scene *scene, weft_image *image,
                              weft_error *error)
 {
     weft_canvas canvas = {0};
@@ -53,7 +53,7 @@ static weft_code draw_frames(weft_player *player, const weft_reach_scene *s, con
 
 static weft_code draw(const weft_prune_pictures *p, int i, int components, weft_image *image, weft_error *error)
 {
-    const weft_reach_scene *s = p->scene;
+    const weft_prune_scene *s = p->scene;
     weft_scene scene = scene_at(s, p->time_s[i]);
     scene.components = scene.components < components ? scene.components : components;
     if (p->whole)
@@ -79,7 +79,7 @@ static weft_code find_cover(weft_prune_pictures *p, int i, weft_error *error)
     return p->covered[i] ? WEFT_OK : weft_fail_memory(error, "cover", (size_t)pixels);
 }
 
-weft_code weft_prune_pictures_draw(weft_player *player, const weft_reach_scene *scene, bool whole, const double *time_s,
+weft_code weft_prune_pictures_draw(weft_player *player, const weft_prune_scene *scene, bool whole, const double *time_s,
                                    int count, weft_prune_pictures *p, weft_error *error)
 {
     *p = (weft_prune_pictures){.player = player, .scene = scene, .whole = whole};

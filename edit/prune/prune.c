@@ -1,11 +1,6 @@
 #include "edit/prune/prune.h"
 
-#include "edit/prune/images.h"
-#include "edit/prune/lobes.h"
-#include "edit/prune/pictures.h"
-#include "edit/prune/shrink.h"
-#include "edit/prune/table_directions.h"
-#include "edit/prune/texels.h"
+#include "edit/prune/steps.h"
 
 enum { ATTEMPTS = 3, DECIDING = 3, MOST_ALLOWANCE = 4 };
 
@@ -17,18 +12,18 @@ static const double steepest_srgb = 12.92;
 
 /* ---- Moments ---- */
 
-static double start_s(const weft_reach_scene *scene)
+static double start_s(const weft_prune_scene *scene)
 {
     return scene->path ? scene->path->time_s[0] : 0;
 }
 
-static double length_s(const weft_reach_scene *scene)
+static double length_s(const weft_prune_scene *scene)
 {
     return scene->path ? scene->path->time_s[scene->path->key_count - 1] - scene->path->time_s[0] : 0;
 }
 
 /* Evenly from the first key to the last; a scene that stands still has one. */
-static int even_times(const weft_reach_scene *scene, double time_s[WEFT_PRUNE_MOMENTS])
+static int even_times(const weft_prune_scene *scene, double time_s[WEFT_PRUNE_MOMENTS])
 {
     int count = length_s(scene) > 0 ? DECIDING : 1;
     for (int i = 0; i < count; i++)
@@ -37,7 +32,7 @@ static int even_times(const weft_reach_scene *scene, double time_s[WEFT_PRUNE_MO
 }
 
 /* One in each of as many parts of the path (Knuth's multiplicative generator of 64 bits). */
-static int random_times(const weft_reach_scene *scene, uint64_t *seed, double time_s[WEFT_PRUNE_MOMENTS])
+static int random_times(const weft_prune_scene *scene, uint64_t *seed, double time_s[WEFT_PRUNE_MOMENTS])
 {
     int count = length_s(scene) > 0 ? WEFT_PRUNE_MOMENTS : 1;
     for (int i = 0; i < count; i++) {
@@ -53,9 +48,9 @@ static int random_times(const weft_reach_scene *scene, uint64_t *seed, double ti
 static long cells_above_horizon(const uint8_t *cells, long *all)
 {
     long count = 0;
-    for (int i = 0; i < WEFT_REACH_SIDE * WEFT_REACH_SIDE; i++) {
-        double x = (i % WEFT_REACH_SIDE + 0.5) / WEFT_REACH_SIDE - 0.5;
-        double y = ((int)(i / WEFT_REACH_SIDE) + 0.5) / WEFT_REACH_SIDE - 0.5;
+    for (int i = 0; i < WEFT_VISIBILITY_SIDE * WEFT_VISIBILITY_SIDE; i++) {
+        double x = (i % WEFT_VISIBILITY_SIDE + 0.5) / WEFT_VISIBILITY_SIDE - 0.5;
+        double y = ((int)(i / WEFT_VISIBILITY_SIDE) + 0.5) / WEFT_VISIBILITY_SIDE - 0.5;
         bool above = x * x + y * y < 0.25;
         *all += above;
         count += above && cells[i];
@@ -63,21 +58,21 @@ static long cells_above_horizon(const uint8_t *cells, long *all)
     return count;
 }
 
-static void note_reach(const weft_reach *reach, weft_prune_report *report)
+static void note_visibility(const weft_visibility *visibility, weft_prune_report *report)
 {
-    report->level_low = reach->level_low;
-    report->level_high = fmin(reach->level_high, reach->level_count - 1);
-    report->span_count = reach->span_count;
-    for (int k = 0; k < reach->level_count; k++) {
-        report->texels.kept += reach->texel_count[k];
-        report->texels.of += (long)reach->width[k] * reach->height[k];
+    report->level_low = visibility->level_low;
+    report->level_high = fmin(visibility->level_high, visibility->level_count - 1);
+    report->span_count = visibility->span_count;
+    for (int k = 0; k < visibility->level_count; k++) {
+        report->texels.kept += visibility->texel_count[k];
+        report->texels.of += (long)visibility->width[k] * visibility->height[k];
     }
-    report->view_cells.kept = cells_above_horizon(reach->view, &report->view_cells.of);
-    report->light_cells.kept = cells_above_horizon(reach->light, &report->light_cells.of);
+    report->view_cells.kept = cells_above_horizon(visibility->view, &report->view_cells.of);
+    report->light_cells.kept = cells_above_horizon(visibility->light, &report->light_cells.of);
 }
 
 /* Light of all lamps together may show a lobe so bright. */
-static double brightness(const weft_reach_scene *scene)
+static double brightness(const weft_prune_scene *scene)
 {
     double sum = 0;
     for (int i = 0; i < scene->scene.light_count; i++) {
@@ -87,21 +82,22 @@ static double brightness(const weft_reach_scene *scene)
     return fmax(sum * scene->scene.exposure, 1e-9);
 }
 
-static weft_code prune_by_bounds(const weft_reach_scene *scene, weft_prune_error allowed, weft_reach *reach,
+static weft_code prune_by_bounds(const weft_prune_scene *scene, weft_prune_error allowed, weft_visibility *visibility,
                                  weft_material *material, weft_prune_report *report, weft_error *error)
 {
     report->views.of = material->view_count;
     report->lights.of = material->light_count;
-    note_reach(reach, report);
-    WEFT_TRY(weft_prune_texels(reach, material, &report->finer_levels, &report->coarser_levels, error));
-    WEFT_TRY(weft_prune_tables(reach, material, error));
+    note_visibility(visibility, report);
+    WEFT_TRY(weft_prune_texels(visibility, material, &report->finer_levels, &report->coarser_levels, error));
+    WEFT_TRY(weft_prune_tables(visibility, material, error));
     if (material->components && allowed.rmse > 0)
         weft_prune_round_diffuse(material);
     if (!scene->scene.environment)
-        weft_prune_lobes(reach, allowed.rmse / 255 / steepest_srgb / brightness(scene), material, &report->lobes_gone);
+        weft_prune_lobes(visibility, allowed.rmse / 255 / steepest_srgb / brightness(scene), material,
+                         &report->lobes_gone);
     report->views.kept = material->view_count;
     report->lights.kept = material->light_count;
-    return weft_prune_note_seen(reach, report->finer_levels, report->coarser_levels, material, error);
+    return weft_prune_note_seen(visibility, report->finer_levels, report->coarser_levels, material, error);
 }
 
 /* ---- What pictures allow ---- */
@@ -115,9 +111,9 @@ static weft_code measure(const weft_prune_pictures *pictures, weft_prune_report 
 }
 
 /* Components are pruned from `whole`. */
-static weft_code attempt(const weft_prune_pictures *deciding, const weft_reach *reach, const weft_components *whole,
-                         weft_prune_error allowed, weft_material *material, weft_prune_report *report,
-                         weft_error *error)
+static weft_code attempt(const weft_prune_pictures *deciding, const weft_visibility *visibility,
+                         const weft_components *whole, weft_prune_error allowed, weft_material *material,
+                         weft_prune_report *report, weft_error *error)
 {
     if (whole) {
         weft_components_free(material->components);
@@ -128,7 +124,7 @@ static weft_code attempt(const weft_prune_pictures *deciding, const weft_reach *
         report->value_step = 0;
     }
     if (whole && allowed.rmse > 0) {
-        WEFT_TRY(weft_prune_shrink(deciding, reach, allowed, material, report, error));
+        WEFT_TRY(weft_prune_shrink(deciding, visibility, allowed, material, report, error));
     } else {
         WEFT_TRY(weft_player_set_material(deciding->player, material, error));
         WEFT_TRY(weft_prune_pictures_compare(deciding, WEFT_COMPONENTS_MAX, &report->predicted, error));
@@ -153,7 +149,7 @@ bool weft_prune_holds(const weft_prune_report *report)
 
 /* First by what is allowed itself; then by what whole pictures make of that; then, where other moments show more, by
  * less of it, in the end by nothing. */
-static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const weft_reach *reach,
+static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const weft_visibility *visibility,
                                    const weft_components *whole, const weft_progress *progress, weft_material *material,
                                    weft_prune_report *report, weft_error *error)
 {
@@ -162,7 +158,7 @@ static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const 
     for (int i = 0; !enough && i <= ATTEMPTS; i++) {
         weft_progress_report(progress, "trying what pictures allow", i, ATTEMPTS + 1);
         asked = i == ATTEMPTS ? (weft_prune_error){0} : asked;
-        WEFT_TRY(attempt(&pictures[0], reach, whole, asked, material, report, error));
+        WEFT_TRY(attempt(&pictures[0], visibility, whole, asked, material, report, error));
         WEFT_TRY(weft_prune_pictures_compare(&pictures[1], WEFT_COMPONENTS_MAX, &report->predicted, error));
         double factor = i == 0 && whole ? allowance(&report->predicted, &report->allowed) : less;
         asked = (weft_prune_error){factor * asked.rmse, factor * asked.flip};
@@ -175,7 +171,7 @@ static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const 
     return WEFT_OK;
 }
 
-static weft_code draw_moments(weft_player *player, const weft_reach_scene *scene, uint64_t seed,
+static weft_code draw_moments(weft_player *player, const weft_prune_scene *scene, uint64_t seed,
                               weft_prune_pictures pictures[3], weft_prune_report *report, weft_error *error)
 {
     double time_s[WEFT_PRUNE_MOMENTS];
@@ -187,26 +183,26 @@ static weft_code draw_moments(weft_player *player, const weft_reach_scene *scene
     return weft_prune_pictures_draw(player, scene, true, time_s, count, &pictures[2], error);
 }
 
-static weft_code prune(weft_player *player, const weft_reach_scene *scene, uint64_t seed, weft_reach *reach,
+static weft_code prune(weft_player *player, const weft_prune_scene *scene, uint64_t seed, weft_visibility *visibility,
                        weft_prune_pictures pictures[3], const weft_progress *progress, weft_material *material,
                        weft_prune_report *report, weft_error *error)
 {
     weft_components *whole = NULL;
     WEFT_TRY(draw_moments(player, scene, seed, pictures, report, error));
-    WEFT_TRY(prune_by_bounds(scene, report->allowed, reach, material, report, error));
+    WEFT_TRY(prune_by_bounds(scene, report->allowed, visibility, material, report, error));
     if (material->components)
         WEFT_TRY(
             weft_prune_copy_components(material->components, material->components->component_count, &whole, error));
-    weft_code code = prune_by_pictures(pictures, reach, whole, progress, material, report, error);
+    weft_code code = prune_by_pictures(pictures, visibility, whole, progress, material, report, error);
     weft_components_free(whole);
     return code;
 }
 
-weft_code weft_prune(weft_player *player, const weft_reach_scene *scene, weft_prune_error allowed, uint64_t seed,
+weft_code weft_prune(weft_player *player, const weft_prune_scene *scene, weft_prune_error allowed, uint64_t seed,
                      const weft_progress *progress, weft_material *material, weft_prune_report *report,
                      weft_error *error)
 {
-    weft_reach reach;
+    weft_visibility visibility;
     weft_prune_pictures pictures[3] = {0};
     *report = (weft_prune_report){.allowed = allowed};
     if (material->seen)
@@ -214,11 +210,11 @@ weft_code weft_prune(weft_player *player, const weft_reach_scene *scene, weft_pr
             error, WEFT_BAD_INPUT,
             "the material was pruned for a scene before: prune the whole one, which has more to choose from");
     WEFT_TRY(weft_material_size(material, &report->bytes_before, error));
-    WEFT_TRY(weft_reach_find(scene, material, progress, &reach, error));
-    weft_code code = prune(player, scene, seed, &reach, pictures, progress, material, report, error);
+    WEFT_TRY(weft_visibility_find(scene, material, progress, &visibility, error));
+    weft_code code = prune(player, scene, seed, &visibility, pictures, progress, material, report, error);
     for (int i = 0; i < 3; i++)
         weft_prune_pictures_free(&pictures[i]);
-    weft_reach_free(&reach);
+    weft_visibility_free(&visibility);
     return code == WEFT_OK ? weft_material_size(material, &report->bytes_after, error) : code;
 }
 

@@ -1,11 +1,11 @@
 /* A material with only what a scene requires (docs/reference/pruning.md): mip levels, texels, entries of tables and
- * lobes that no pixel of it can reach are left out, by bounds (edit/prune/reach.h); of components what of images,
+ * lobes that no pixel of it can reach are left out, by bounds (edit/prune/visibility.h); of components what of images,
  * components and digits changes pictures less than is allowed, by pictures of moments of the path. Pictures of other
  * moments tell how far the result is from the whole. */
 #ifndef WEFT_EDIT_PRUNE_PRUNE_H
 #define WEFT_EDIT_PRUNE_PRUNE_H
 
-#include "edit/prune/reach.h"
+#include "edit/prune/visibility.h"
 #include "player/draw/player.h"
 
 #include <jansson.h>
@@ -40,9 +40,9 @@ typedef struct weft_prune_report {
 
 /* Prunes `material`, which `player` shows with the mesh of the scene. allowed: what pictures may differ by; pictures of
  * random moments, from `seed`, are held against it, and what does not hold is done again with half of it, in the end
- * with nothing but the bounds. The player then shows the pruned material. Errors: those of weft_reach_find;
+ * with nothing but the bounds. The player then shows the pruned material. Errors: those of weft_visibility_find;
  * WEFT_BAD_INPUT for a material that was pruned before; those of drawing; WEFT_SYSTEM. */
-weft_code weft_prune(weft_player *player, const weft_reach_scene *scene, weft_prune_error allowed, uint64_t seed,
+weft_code weft_prune(weft_player *player, const weft_prune_scene *scene, weft_prune_error allowed, uint64_t seed,
                      const weft_progress *progress, weft_material *material, weft_prune_report *report,
                      weft_error *error);
 

@@ -1,7 +1,6 @@
-#include "edit/prune/shrink.h"
+#include "edit/prune/steps.h"
 
 #include "btf/material/component_rounding.h"
-#include "edit/prune/images.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +15,7 @@ enum { MARGINS = 2, STEPS = 82 /* the coarsest: a fifth of white */ };
 
 typedef struct shrinking {
     const weft_prune_pictures *pictures;
-    const weft_reach *reach;
+    const weft_visibility *visibility;
     weft_prune_error allowed;
     weft_material *material;
     weft_components *before; /* the components before a step */
@@ -60,7 +59,7 @@ static weft_code try_margin(shrinking *s, double margin_rad, bool *kept, bool *e
     weft_prune_error is;
     int count;
     WEFT_TRY(begin(s, s->before->component_count, error));
-    WEFT_TRY(weft_prune_find_images(s->reach, s->before, margin_rad, kept, &count, error));
+    WEFT_TRY(weft_prune_find_images(s->visibility, s->before, margin_rad, kept, &count, error));
     s->report->images = (weft_prune_count){count, s->before->image_count};
     if (count == s->before->image_count) {
         *enough = true;
@@ -137,10 +136,11 @@ static weft_code prune_components(shrinking *s, weft_error *error)
     return begin(s, high * WEFT_COMPONENTS_GROUP, error);
 }
 
-weft_code weft_prune_shrink(const weft_prune_pictures *pictures, const weft_reach *reach, weft_prune_error allowed,
-                            weft_material *material, weft_prune_report *report, weft_error *error)
+weft_code weft_prune_shrink(const weft_prune_pictures *pictures, const weft_visibility *visibility,
+                            weft_prune_error allowed, weft_material *material, weft_prune_report *report,
+                            weft_error *error)
 {
-    shrinking s = {pictures, reach, allowed, material, NULL, report};
+    shrinking s = {pictures, visibility, allowed, material, NULL, report};
     weft_code code = settle(&s, error);
     if (code == WEFT_OK)
         code = prune_images(&s, error);

@@ -1,4 +1,4 @@
-#include "edit/prune/surface_patch.h"
+#include "edit/prune/visibility_bounds.h"
 
 /* Of angles: what single precision, in which a pixel computes them, makes of them. */
 static const double angle_margin = 1e-3;

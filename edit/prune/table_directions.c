@@ -1,4 +1,4 @@
-#include "edit/prune/table_directions.h"
+#include "edit/prune/steps.h"
 
 #include "btf/direction/square_map.h"
 #include "btf/direction/triangulation.h"
@@ -19,14 +19,14 @@ static weft_vec3 direction_at(double x, double y)
 
 static weft_vec3 direction_in_cell(int cell, double x, double y)
 {
-    int column = cell % WEFT_REACH_SIDE, row = cell / WEFT_REACH_SIDE;
-    weft_vec3 direction = direction_at((column + x) / WEFT_REACH_SIDE, (row + y) / WEFT_REACH_SIDE);
+    int column = cell % WEFT_VISIBILITY_SIDE, row = cell / WEFT_VISIBILITY_SIDE;
+    weft_vec3 direction = direction_at((column + x) / WEFT_VISIBILITY_SIDE, (row + y) / WEFT_VISIBILITY_SIDE);
     direction.z = fmax(direction.z, 0);
     return weft_unit(direction);
 }
 
 /* A cell lies within this of its middle: half its diagonal, where the map shrinks most, to a quarter. */
-static const double cell_radius = 4 * 0.7071067811865476 / WEFT_REACH_SIDE;
+static const double cell_radius = 4 * 0.7071067811865476 / WEFT_VISIBILITY_SIDE;
 
 /* ---- Which entries ---- */
 
@@ -72,10 +72,10 @@ static void keep_for_cell(const weft_triangulation *t, const weft_vec3 *directio
 {
     weft_vec3 middle = direction_in_cell(cell, 0.5, 0.5);
     const int(*corner)[3] = weft_triangulation_triangles(t);
-    double reach = angle_to_all(t, direction, middle) + 2 * cell_radius;
+    double visibility = angle_to_all(t, direction, middle) + 2 * cell_radius;
     for (int i = 0; i < weft_triangulation_triangle_count(t); i++) {
         const weft_vec3 at[3] = {direction[corner[i][0]], direction[corner[i][1]], direction[corner[i][2]]};
-        if (angle_to_triangle(middle, at) <= reach)
+        if (angle_to_triangle(middle, at) <= visibility)
             kept[corner[i][0]] = kept[corner[i][1]] = kept[corner[i][2]] = true;
     }
 }
@@ -83,7 +83,7 @@ static void keep_for_cell(const weft_triangulation *t, const weft_vec3 *directio
 static int keep(const weft_triangulation *t, const weft_vec3 *direction, int count, const uint8_t *cells, bool *kept)
 {
     int kept_count = 0;
-    for (int cell = 0; cell < WEFT_REACH_SIDE * WEFT_REACH_SIDE; cell++)
+    for (int cell = 0; cell < WEFT_VISIBILITY_SIDE * WEFT_VISIBILITY_SIDE; cell++)
         if (cells[cell])
             keep_for_cell(t, direction, cell, kept);
     for (int i = 0; i < count; i++)
@@ -117,7 +117,7 @@ static bool same_weights(const weft_triangulation *all, const weft_triangulation
 static bool is_still_the_same(const weft_triangulation *all, const weft_triangulation *few, const int *number,
                               int count, const uint8_t *cells, double *weight)
 {
-    for (int cell = 0; cell < WEFT_REACH_SIDE * WEFT_REACH_SIDE; cell++)
+    for (int cell = 0; cell < WEFT_VISIBILITY_SIDE * WEFT_VISIBILITY_SIDE; cell++)
         for (int i = 0; cells[cell] && i < PROBES * PROBES; i++) {
             weft_vec3 q = direction_in_cell(cell, i % PROBES / (PROBES - 1.0), (int)(i / PROBES) / (PROBES - 1.0));
             if (!same_weights(all, few, number, count, q, weight))
@@ -212,8 +212,8 @@ static weft_code prune_table(weft_material *material, bool of_lights, const uint
     return code;
 }
 
-weft_code weft_prune_tables(const weft_reach *reach, weft_material *material, weft_error *error)
+weft_code weft_prune_tables(const weft_visibility *visibility, weft_material *material, weft_error *error)
 {
-    WEFT_TRY(prune_table(material, false, reach->view, error));
-    return prune_table(material, true, reach->light, error);
+    WEFT_TRY(prune_table(material, false, visibility->view, error));
+    return prune_table(material, true, visibility->light, error);
 }

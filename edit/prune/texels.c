@@ -1,37 +1,37 @@
-#include "edit/prune/texels.h"
+#include "edit/prune/steps.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- Levels ---- */
 
-static bool is_empty(const weft_reach *reach, int k)
+static bool is_empty(const weft_visibility *visibility, int k)
 {
-    return reach->texel_count[k] == 0;
+    return visibility->texel_count[k] == 0;
 }
 
 /* Texels stay as square as they are: sides that were halved unevenly do not. */
-static bool keeps_proportions(const weft_reach *reach)
+static bool keeps_proportions(const weft_visibility *visibility)
 {
-    return (long)reach->width[0] * reach->height[1] == (long)reach->width[1] * reach->height[0];
+    return (long)visibility->width[0] * visibility->height[1] == (long)visibility->width[1] * visibility->height[0];
 }
 
-static void drop_finest(weft_reach *reach, weft_material *material)
+static void drop_finest(weft_visibility *visibility, weft_material *material)
 {
-    double width_mm = material->texel_pitch_mm * reach->width[0];
+    double width_mm = material->texel_pitch_mm * visibility->width[0];
     weft_material_drop_finest(material);
-    free(reach->texel[0]);
-    reach->level_count--;
-    for (int k = 0; k < reach->level_count; k++) {
-        reach->width[k] = reach->width[k + 1];
-        reach->height[k] = reach->height[k + 1];
-        reach->texel[k] = reach->texel[k + 1];
-        reach->texel_count[k] = reach->texel_count[k + 1];
+    free(visibility->texel[0]);
+    visibility->level_count--;
+    for (int k = 0; k < visibility->level_count; k++) {
+        visibility->width[k] = visibility->width[k + 1];
+        visibility->height[k] = visibility->height[k + 1];
+        visibility->texel[k] = visibility->texel[k + 1];
+        visibility->texel_count[k] = visibility->texel_count[k + 1];
     }
-    reach->texel[reach->level_count] = NULL;
-    reach->level_low--;
-    reach->level_high--;
-    material->texel_pitch_mm = width_mm / reach->width[0];
+    visibility->texel[visibility->level_count] = NULL;
+    visibility->level_low--;
+    visibility->level_high--;
+    material->texel_pitch_mm = width_mm / visibility->width[0];
 }
 
 /* ---- Texels ---- */
@@ -116,40 +116,41 @@ static void fill_level(const weft_material *material, int k, const size_t *sourc
                     count);
 }
 
-static weft_code fill(const weft_reach *reach, const weft_material *material, int k, weft_error *error)
+static weft_code fill(const weft_visibility *visibility, const weft_material *material, int k, weft_error *error)
 {
-    size_t count = (size_t)reach->width[k] * (size_t)reach->height[k];
-    if (reach->texel_count[k] == (long)count)
+    size_t count = (size_t)visibility->width[k] * (size_t)visibility->height[k];
+    if (visibility->texel_count[k] == (long)count)
         return WEFT_OK;
     size_t *source = calloc(count, sizeof *source);
     if (!source)
         return weft_fail_memory(error, "texels", count * sizeof *source);
-    find_sources(reach->texel[k], reach->width[k], reach->height[k], source);
+    find_sources(visibility->texel[k], visibility->width[k], visibility->height[k], source);
     fill_level(material, k, source);
     free(source);
     return WEFT_OK;
 }
 
-static void drop_coarsest(weft_reach *reach, weft_material *material)
+static void drop_coarsest(weft_visibility *visibility, weft_material *material)
 {
     weft_material_drop_coarsest(material);
-    free(reach->texel[--reach->level_count]);
-    reach->texel[reach->level_count] = NULL;
+    free(visibility->texel[--visibility->level_count]);
+    visibility->texel[visibility->level_count] = NULL;
 }
 
-weft_code weft_prune_texels(weft_reach *reach, weft_material *material, int *finer, int *coarser, weft_error *error)
+weft_code weft_prune_texels(weft_visibility *visibility, weft_material *material, int *finer, int *coarser,
+                            weft_error *error)
 {
     *finer = *coarser = 0;
-    while (reach->level_count > 1 && is_empty(reach, 0) && keeps_proportions(reach)) {
-        drop_finest(reach, material);
+    while (visibility->level_count > 1 && is_empty(visibility, 0) && keeps_proportions(visibility)) {
+        drop_finest(visibility, material);
         ++*finer;
     }
-    while (reach->level_count > 1 && is_empty(reach, reach->level_count - 1)) {
-        drop_coarsest(reach, material);
+    while (visibility->level_count > 1 && is_empty(visibility, visibility->level_count - 1)) {
+        drop_coarsest(visibility, material);
         ++*coarser;
     }
-    for (int k = 0; k < reach->level_count; k++)
-        WEFT_TRY(fill(reach, material, k, error));
+    for (int k = 0; k < visibility->level_count; k++)
+        WEFT_TRY(fill(visibility, material, k, error));
     return WEFT_OK;
 }
 
@@ -178,31 +179,31 @@ void weft_prune_round_diffuse(weft_material *material)
 /* ---- What is seen ---- */
 
 /* All texels that interpolation reads within a cell are kept. */
-static bool is_kept(const weft_reach *reach, int k, int column, int row)
+static bool is_kept(const weft_visibility *visibility, int k, int column, int row)
 {
-    int width = reach->width[k], height = reach->height[k], side = WEFT_REACH_SIDE;
+    int width = visibility->width[k], height = visibility->height[k], side = WEFT_VISIBILITY_SIDE;
     int left = (int)floor((double)column * width / side - 0.5), right = (int)floor((column + 1.0) * width / side - 0.5);
     int top = (int)floor((double)row * height / side - 0.5), bottom = (int)floor((row + 1.0) * height / side - 0.5);
     for (int y = top; y <= bottom + 1; y++)
         for (int x = left; x <= right + 1; x++)
-            if (!reach->texel[k][(size_t)((y + height) % height) * (size_t)width + (size_t)((x + width) % width)])
+            if (!visibility->texel[k][(size_t)((y + height) % height) * (size_t)width + (size_t)((x + width) % width)])
                 return false;
     return true;
 }
 
-weft_code weft_prune_note_seen(const weft_reach *reach, int finer, int coarser, weft_material *material,
+weft_code weft_prune_note_seen(const weft_visibility *visibility, int finer, int coarser, weft_material *material,
                                weft_error *error)
 {
     weft_seen *seen;
-    WEFT_TRY(weft_seen_create(WEFT_REACH_SIDE, reach->level_count, &seen, error));
+    WEFT_TRY(weft_seen_create(WEFT_VISIBILITY_SIDE, visibility->level_count, &seen, error));
     seen->finer_levels = finer;
     seen->coarser_levels = coarser;
-    memcpy(weft_seen_cells(seen, WEFT_SEEN_VIEWS), reach->view, sizeof reach->view);
-    memcpy(weft_seen_cells(seen, WEFT_SEEN_LIGHTS), reach->light, sizeof reach->light);
-    for (int k = 0; k < reach->level_count; k++) {
+    memcpy(weft_seen_cells(seen, WEFT_SEEN_VIEWS), visibility->view, sizeof visibility->view);
+    memcpy(weft_seen_cells(seen, WEFT_SEEN_LIGHTS), visibility->light, sizeof visibility->light);
+    for (int k = 0; k < visibility->level_count; k++) {
         uint8_t *cell = weft_seen_cells(seen, WEFT_SEEN_PLACES + k);
-        for (int i = 0; i < WEFT_REACH_SIDE * WEFT_REACH_SIDE; i++)
-            cell[i] = is_kept(reach, k, i % WEFT_REACH_SIDE, i / WEFT_REACH_SIDE);
+        for (int i = 0; i < WEFT_VISIBILITY_SIDE * WEFT_VISIBILITY_SIDE; i++)
+            cell[i] = is_kept(visibility, k, i % WEFT_VISIBILITY_SIDE, i / WEFT_VISIBILITY_SIDE);
     }
     weft_material_take_seen(material, seen);
     return WEFT_OK;

@@ -1,7 +1,7 @@
 /* Colours of files against the matrices that others published. */
 #include "base/picture/colour.h"
 #include "base/picture/colour_claim.h"
-#include "base/picture/icc_profile.h"
+#include "base/picture/colour_space.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/icc_profile.h"
 

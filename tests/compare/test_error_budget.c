@@ -2,8 +2,7 @@
 #include "tests/compare/fixture.h"
 
 #include "capture/virtual/ground_truth.h"
-#include "compare/error_budget/cloth.h"
-#include "compare/error_budget/measure.h"
+#include "compare/error_budget/error_budget.h"
 #include "compress/compress.h"
 #include "tests/support/scratch_folder.h"
 
@@ -32,7 +31,7 @@ enum { MADE_UP = 20000 };
 
 /* Each stage adds an independent error of the given standard deviation to cloth of mean square 1; the answers of the
  * cloth and of its samples have noise besides, four times as large as the error of the directions. */
-static void make_up(const double deviation[WEFT_SOURCES], weft_source_answer *answer)
+static void make_up(const double deviation[WEFT_SOURCE_COUNT], weft_source_answer *answer)
 {
     for (int i = 0; i < MADE_UP; i++)
         for (int c = 0; c < 3; c++) {
@@ -59,7 +58,7 @@ static weft_error_stack stack_of(const weft_source_answer *answer, size_t count)
 static void assert_adds_up(const weft_error_stack *stack)
 {
     double sum = 0;
-    for (int part = 0; part < WEFT_SOURCES; part++)
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++)
         sum += stack->part[part].value;
     assert_float_equal(sum, stack->whole.value, 1e-12);
 }
@@ -68,11 +67,11 @@ static void each_part_is_what_its_stage_added(void **state)
 {
     (void)state;
     static weft_source_answer answer[MADE_UP];
-    const double deviation[WEFT_SOURCES] = {0.05, 0.2, 0.3, 0.1};
+    const double deviation[WEFT_SOURCE_COUNT] = {0.05, 0.2, 0.3, 0.1};
     make_up(deviation, answer);
     weft_error_stack stack = stack_of(answer, MADE_UP);
     assert_adds_up(&stack);
-    for (int part = 0; part < WEFT_SOURCES; part++) {
+    for (int part = 0; part < WEFT_SOURCE_COUNT; part++) {
         double expected = deviation[part] * deviation[part];
         assert_float_equal(stack.part[part].value, expected, 0.003);
         assert_float_equal(stack.own[part], expected, 0.003);
@@ -90,7 +89,7 @@ static void a_stage_may_make_up_for_another(void **state)
 {
     (void)state;
     static weft_source_answer answer[MADE_UP];
-    make_up((const double[WEFT_SOURCES]){0.01, 0.2, 0, 0}, answer);
+    make_up((const double[WEFT_SOURCE_COUNT]){0.01, 0.2, 0, 0}, answer);
     for (int i = 0; i < MADE_UP; i++)
         for (int c = 0; c < 3; c++) {
             weft_source_answer *a = &answer[i];

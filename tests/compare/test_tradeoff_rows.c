@@ -1,13 +1,13 @@
-/* What a price list offers beside fits of weft compress: BARD, analytic cloth, fewer rings; strobing; and that no
+/* What a price list offers beside fits of weft compress: BARD, analytic cloth, fewer rings; flicker; and that no
  * preset is beaten. */
 #include "tests/compare/fixture.h"
 
 #include "btf/direction/direction.h"
 #include "compare/tradeoff/choice.h"
 #include "compare/tradeoff/cloth.h"
+#include "compare/tradeoff/flicker.h"
 #include "compare/tradeoff/held_error.h"
 #include "compare/tradeoff/held_pictures.h"
-#include "compare/tradeoff/strobing.h"
 
 #include <math.h>
 #include <string.h>
@@ -226,16 +226,16 @@ static void a_fitted_cloth_lies_where_it_was_fitted(void **state)
     unlink(path);
 }
 
-/* ---- Strobing ---- */
+/* ---- Flicker ---- */
 
 static double excess_of(const double *value, int count)
 {
-    weft_strobing strobing = {0};
-    weft_strobing_add(value, count, &strobing);
-    return weft_strobing_excess(&strobing);
+    weft_flicker flicker = {0};
+    weft_flicker_add(value, count, &flicker);
+    return weft_flicker_excess(&flicker);
 }
 
-static void strobing_counts_what_moves_more_than_once(void **state)
+static void flicker_counts_what_moves_more_than_once(void **state)
 {
     (void)state;
     const double once[] = {0, 1, 3, 2, 0}, falls[] = {5, 4, 1}, still[] = {2, 2, 2}, twice[] = {0, 3, 0, 3, 0},
@@ -263,7 +263,7 @@ static weft_rgb matte(int x, int y, weft_vec3 light, weft_vec3 view)
     return (weft_rgb){0.5, 0.5, 0.5};
 }
 
-static double strobing_of(fixture_reflectance reflectance)
+static double flicker_of(fixture_reflectance reflectance)
 {
     weft_model *model;
     double excess;
@@ -271,7 +271,7 @@ static double strobing_of(fixture_reflectance reflectance)
     weft_error error = {0};
     fixture_far_dataset(path, 2, 2, 6, reflectance, FIXTURE_MASK_NONE);
     expect_ok(weft_model_open(path, &options, &model, &error), &error);
-    expect_ok(weft_strobing_measure(model, &excess, &error), &error);
+    expect_ok(weft_flicker_measure(model, &excess, &error), &error);
     weft_model_close(model);
     unlink(path);
     return excess;
@@ -279,11 +279,11 @@ static double strobing_of(fixture_reflectance reflectance)
 
 /* Photographs 15 degrees apart that have nothing to do with each other strobe; a matte cloth under a cosine does not.
  */
-static void photographs_strobe_and_matte_cloth_does_not(void **state)
+static void photographs_flicker_and_matte_cloth_does_not(void **state)
 {
     (void)state;
-    assert_float_equal(strobing_of(matte), 0, 0.002);
-    assert_true(strobing_of(speckled) > 0.5);
+    assert_float_equal(flicker_of(matte), 0, 0.002);
+    assert_true(flicker_of(speckled) > 0.5);
 }
 
 /* ---- Presets ---- */
@@ -366,8 +366,8 @@ int test_tradeoff_rows(void)
         cmocka_unit_test(bard_and_cloth_do_not_see_what_is_held_out),
         cmocka_unit_test(a_block_sees_the_cloth_of_the_whole),
         cmocka_unit_test(a_fitted_cloth_lies_where_it_was_fitted),
-        cmocka_unit_test(strobing_counts_what_moves_more_than_once),
-        cmocka_unit_test(photographs_strobe_and_matte_cloth_does_not),
+        cmocka_unit_test(flicker_counts_what_moves_more_than_once),
+        cmocka_unit_test(photographs_flicker_and_matte_cloth_does_not),
         cmocka_unit_test(nothing_beats_a_preset_in_bytes_time_and_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,6 @@
 /* Draped cloth from geometry beside the dataset and the material made of it. Skipped without OpenGL. */
 #include "base/atomic_file.h"
 #include "compare/truth/comparison.h"
-#include "compare/truth/trace.h"
 #include "compress/compress.h"
 #include "geometry/acquisition/acquisition.h"
 #include "player/draw/player.h"

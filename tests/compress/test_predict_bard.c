@@ -1,7 +1,7 @@
 /* weft bard on datasets whose truth is known. */
 #include "btf/direction/direction.h"
 #include "compress/bard/predict.h"
-#include "compress/bard/table_photographs.h"
+#include "compress/bard/texel_table.h"
 #include "tests/compare/fixture.h"
 #include "tests/support/run_weft.h"
 

@@ -5,11 +5,8 @@
 #include "btf/direction/direction.h"
 #include "btf/direction/square_map.h"
 #include "btf/material/component_rounding.h"
-#include "edit/prune/images.h"
-#include "edit/prune/lobes.h"
-#include "edit/prune/reach.h"
-#include "edit/prune/table_directions.h"
-#include "edit/prune/texels.h"
+#include "edit/prune/steps.h"
+#include "edit/prune/visibility.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"
 #include "player/scene/false_colour.h"
@@ -72,9 +69,9 @@ static weft_material make_material(void)
 typedef struct stage {
     weft_mesh mesh;
     weft_path path;
-    weft_reach_scene scene;
+    weft_prune_scene scene;
     weft_material material;
-    weft_reach reach;
+    weft_visibility visibility;
 } stage;
 
 static void open_stage(const char *mesh, const char *path, double repeat, stage *s)
@@ -84,16 +81,16 @@ static void open_stage(const char *mesh, const char *path, double repeat, stage 
     expect_ok(weft_write_file("path.csv", path, strlen(path), &error), &error);
     expect_ok(weft_path_read("path.csv", &s->path, &error), &error);
     s->material = make_material();
-    s->scene = (weft_reach_scene){&s->mesh, &s->path, weft_scene_default(), WIDTH, HEIGHT, 1};
+    s->scene = (weft_prune_scene){&s->mesh, &s->path, weft_scene_default(), WIDTH, HEIGHT, 1};
     s->scene.scene.repeat = repeat;
-    expect_ok(weft_reach_find(&s->scene, &s->material, NULL, &s->reach, &error), &error);
+    expect_ok(weft_visibility_find(&s->scene, &s->material, NULL, &s->visibility, &error), &error);
     expect_ok(weft_player_set_mesh(player, &s->mesh, &error), &error);
     expect_ok(weft_player_set_material(player, &s->material, &error), &error);
 }
 
 static void close_stage(stage *s)
 {
-    weft_reach_free(&s->reach);
+    weft_visibility_free(&s->visibility);
     weft_material_free(&s->material);
     weft_path_free(&s->path);
     weft_mesh_free(&s->mesh);
@@ -115,40 +112,41 @@ static bool is_set(const uint8_t *map, int side, const float direction[3])
 }
 
 /* All four texels around a place. */
-static bool has_texels(const weft_reach *reach, int k, double u, double v)
+static bool has_texels(const weft_visibility *visibility, int k, double u, double v)
 {
-    int width = reach->width[k], height = reach->height[k];
+    int width = visibility->width[k], height = visibility->height[k];
     int x = (int)floor((u - floor(u)) * width - 0.5), y = (int)floor((-v - floor(-v)) * height - 0.5);
     bool all = true;
     for (int i = 0; i < 4; i++)
-        all = all && reach->texel[k][(y + i / 2 + height) % height * width + (x + i % 2 + width) % width];
+        all = all && visibility->texel[k][(y + i / 2 + height) % height * width + (x + i % 2 + width) % width];
     return all;
 }
 
 static int pair_of(const float d[3])
 {
     weft_place place = weft_place_of_direction(weft_vec3_of(d[0], d[1], d[2]));
-    int side = WEFT_REACH_PAIR_SIDE;
+    int side = WEFT_VISIBILITY_PAIR_SIDE;
     return (int)fmin(place.y * side, side - 1) * side + (int)fmin(place.x * side, side - 1);
 }
 
 /* A pixel that takes less than this of a level may find it gone: levels are rounded in single precision. */
 static const double trifle = 1e-3;
 
-static void expect_held(const weft_reach *reach, const weft_surface_sample *at)
+static void expect_held(const weft_visibility *visibility, const weft_surface_sample *at)
 {
-    double level = fmin(fmax((double)at->level, 0), reach->level_count - 1);
+    double level = fmin(fmax((double)at->level, 0), visibility->level_count - 1);
     assert_true((level > floor(level) && ceil(level) - level < trifle) ||
-                has_texels(reach, (int)level, (double)at->u, (double)at->v));
-    assert_true(level - floor(level) < trifle || has_texels(reach, (int)ceil(level), (double)at->u, (double)at->v));
-    assert_true(is_set(reach->view, WEFT_REACH_SIDE, at->view));
+                has_texels(visibility, (int)level, (double)at->u, (double)at->v));
+    assert_true(level - floor(level) < trifle ||
+                has_texels(visibility, (int)ceil(level), (double)at->u, (double)at->v));
+    assert_true(is_set(visibility->view, WEFT_VISIBILITY_SIDE, at->view));
     if (at->light[2] <= 0)
         return;
-    assert_true(is_set(reach->light, WEFT_REACH_SIDE, at->light));
-    assert_true(reach->pair[(size_t)pair_of(at->view) * WEFT_REACH_PAIR_CELLS + (size_t)pair_of(at->light)]);
+    assert_true(is_set(visibility->light, WEFT_VISIBILITY_SIDE, at->light));
+    assert_true(visibility->pair[(size_t)pair_of(at->view) * WEFT_VISIBILITY_PAIR_CELLS + (size_t)pair_of(at->light)]);
     for (int i = 0; i < 9; i++) {
         double product = (double)(at->light[i / 3] * at->view[i % 3]);
-        assert_true(product >= reach->product[i / 3][i % 3][0] && product <= reach->product[i / 3][i % 3][1]);
+        assert_true(product >= visibility->product[i / 3][i % 3][0] && product <= visibility->product[i / 3][i % 3][1]);
     }
 }
 
@@ -165,7 +163,7 @@ static long expect_all_held(const stage *s)
         expect_ok(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error), &error);
         for (int pixel = 0; pixel < PIXELS; pixel++)
             if (at[pixel].covered > 0) {
-                expect_held(&s->reach, &at[pixel]);
+                expect_held(&s->visibility, &at[pixel]);
                 covered++;
             }
         free(at);
@@ -193,7 +191,7 @@ static void expect_lobes_held(const stage *s)
     weft_path_apply(&s->path, 0.7, &scene);
     expect_ok(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error), &error);
     for (int i = 0; i < 2; i++) {
-        double bound = weft_lobe_bound(&s->reach, &frame, lobe[i]), most = 0;
+        double bound = weft_lobe_bound(&s->visibility, &frame, lobe[i]), most = 0;
         for (int p = 0; p < PIXELS; p++) {
             weft_vec3 l = weft_vec3_of(at[p].light[0], at[p].light[1], at[p].light[2]);
             weft_vec3 v = weft_vec3_of(at[p].view[0], at[p].view[1], at[p].view[2]);
@@ -215,8 +213,8 @@ static void no_pixel_of_a_moving_drape_leaves_the_bounds(void **state)
     stage s;
     open_stage("drape", turning, 3, &s);
     assert_true(expect_all_held(&s) > MOMENTS * PIXELS / 10);
-    assert_true(s.reach.span_count > 4);
-    assert_true(share_of(s.reach.pair, (size_t)WEFT_REACH_PAIR_CELLS * WEFT_REACH_PAIR_CELLS) < 0.75);
+    assert_true(s.visibility.span_count > 4);
+    assert_true(share_of(s.visibility.pair, (size_t)WEFT_VISIBILITY_PAIR_CELLS * WEFT_VISIBILITY_PAIR_CELLS) < 0.75);
     expect_lobes_held(&s);
     close_stage(&s);
 }
@@ -228,10 +226,10 @@ static void a_close_camera_reaches_little(void **state)
     stage s;
     open_stage("plane", close_by, 1, &s);
     assert_true(expect_all_held(&s) > MOMENTS * PIXELS / 2);
-    assert_int_equal(s.reach.texel_count[s.reach.level_count - 1], 0);
-    assert_true((double)s.reach.texel_count[0] < 0.75 * TEXELS_X * TEXELS_Y);
-    assert_true(share_of(s.reach.view, sizeof s.reach.view) < 0.2);
-    assert_true(share_of(s.reach.light, sizeof s.reach.light) < 0.05);
+    assert_int_equal(s.visibility.texel_count[s.visibility.level_count - 1], 0);
+    assert_true((double)s.visibility.texel_count[0] < 0.75 * TEXELS_X * TEXELS_Y);
+    assert_true(share_of(s.visibility.view, sizeof s.visibility.view) < 0.2);
+    assert_true(share_of(s.visibility.light, sizeof s.visibility.light) < 0.05);
     close_stage(&s);
 }
 
@@ -242,8 +240,8 @@ static void a_still_ball_stays_within_its_bounds(void **state)
     stage s;
     open_stage("sphere", still, 30, &s);
     assert_true(expect_all_held(&s) > PIXELS / 10);
-    assert_int_equal(s.reach.span_count, 1);
-    assert_int_equal(s.reach.texel_count[0], 0);
+    assert_int_equal(s.visibility.span_count, 1);
+    assert_int_equal(s.visibility.texel_count[0], 0);
     close_stage(&s);
 }
 
@@ -252,17 +250,17 @@ static void a_path_that_sees_nothing_is_refused(void **state)
     (void)state;
     weft_error error = {0};
     weft_mesh mesh;
-    weft_reach reach;
+    weft_visibility visibility;
     weft_material material = make_material();
     expect_ok(weft_mesh_open("plane", &mesh, &error), &error);
-    weft_reach_scene scene = {&mesh, NULL, weft_scene_default(), WIDTH, HEIGHT, 1};
+    weft_prune_scene scene = {&mesh, NULL, weft_scene_default(), WIDTH, HEIGHT, 1};
     scene.scene.orbit.pan_right = 50;
-    assert_int_equal(weft_reach_find(&scene, &material, NULL, &reach, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_visibility_find(&scene, &material, NULL, &visibility, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "nothing of the mesh"));
     for (int i = 0; i < mesh.vertex_count; i++)
         mesh.vertex[i].coordinate[0] = mesh.vertex[i].coordinate[1] = 0.5f;
     scene.scene.orbit.pan_right = 0;
-    assert_int_equal(weft_reach_find(&scene, &material, NULL, &reach, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_visibility_find(&scene, &material, NULL, &visibility, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "texture coordinates"));
     weft_mesh_free(&mesh);
     weft_material_free(&material);
@@ -286,9 +284,9 @@ static void pictures_stay_as_they_were(void **state)
         weft_path_apply(&s.path, time_s[i] = chance(), &scene);
         expect_ok(weft_player_picture(player, &scene, WIDTH, HEIGHT, 1, NULL, &before[i], &error), &error);
     }
-    expect_ok(weft_prune_texels(&s.reach, &s.material, &finer, &coarser, &error), &error);
-    expect_ok(weft_prune_tables(&s.reach, &s.material, &error), &error);
-    weft_prune_lobes(&s.reach, 1e-4, &s.material, &lobes);
+    expect_ok(weft_prune_texels(&s.visibility, &s.material, &finer, &coarser, &error), &error);
+    expect_ok(weft_prune_tables(&s.visibility, &s.material, &error), &error);
+    weft_prune_lobes(&s.visibility, 1e-4, &s.material, &lobes);
     assert_true(coarser > 0);
     assert_true(s.material.view_count < 40);
     assert_true(s.material.light_count < 20);
@@ -314,14 +312,14 @@ static void texels_that_are_not_seen_become_copies(void **state)
     int finer, coarser;
     open_stage("plane", close_by, 1, &s);
     weft_material whole = make_material();
-    expect_ok(weft_prune_texels(&s.reach, &s.material, &finer, &coarser, &error), &error);
+    expect_ok(weft_prune_texels(&s.visibility, &s.material, &finer, &coarser, &error), &error);
     const weft_material_level *level = &s.material.level[0];
     for (int i = 0; i < TEXELS_X * TEXELS_Y; i++) {
         bool copied = false;
         for (int j = 0; j < TEXELS_X * TEXELS_Y && !copied; j++)
-            copied = s.reach.texel[0][j] && memcmp(level->table + 4 * i, whole.level[0].table + 4 * j, 4) == 0;
+            copied = s.visibility.texel[0][j] && memcmp(level->table + 4 * i, whole.level[0].table + 4 * j, 4) == 0;
         assert_true(copied);
-        if (s.reach.texel[0][i])
+        if (s.visibility.texel[0][i])
             assert_memory_equal(level->table + 4 * i, whole.level[0].table + 4 * i, 4);
     }
     weft_material_free(&whole);
@@ -416,11 +414,11 @@ static void far_cameras_take_finer_levels_away(void **state)
     int finer, coarser;
     open_stage("sphere", still, 30, &s);
     double width_mm = s.material.texel_pitch_mm * s.material.level[0].width;
-    expect_ok(weft_prune_texels(&s.reach, &s.material, &finer, &coarser, &error), &error);
+    expect_ok(weft_prune_texels(&s.visibility, &s.material, &finer, &coarser, &error), &error);
     assert_true(finer >= 1);
     assert_int_equal(s.material.level[0].width, TEXELS_X >> finer);
     assert_float_equal(s.material.texel_pitch_mm * s.material.level[0].width, width_mm, 1e-9);
-    expect_ok(weft_prune_note_seen(&s.reach, finer, coarser, &s.material, &error), &error);
+    expect_ok(weft_prune_note_seen(&s.visibility, finer, coarser, &s.material, &error), &error);
     assert_int_equal(s.material.seen->finer_levels, finer);
     assert_false(weft_seen_place(s.material.seen, -0.5, 0.3, 0.3));
     assert_true(weft_seen_place(s.material.seen, 0.5, 0.3, 0.3));
@@ -439,8 +437,8 @@ static void the_tint_is_what_the_maps_say(void **state)
     weft_image plain, tinted;
     long count[3] = {0};
     open_stage("plane", close_by, 1, &s);
-    expect_ok(weft_prune_texels(&s.reach, &s.material, &finer, &coarser, &error), &error);
-    expect_ok(weft_prune_note_seen(&s.reach, finer, coarser, &s.material, &error), &error);
+    expect_ok(weft_prune_texels(&s.visibility, &s.material, &finer, &coarser, &error), &error);
+    expect_ok(weft_prune_note_seen(&s.visibility, finer, coarser, &s.material, &error), &error);
     expect_ok(weft_player_set_material(player, &s.material, &error), &error);
     weft_player_last_ring(player, WEFT_MODE_COMPRESSED, &last_view, &last_light);
     weft_scene scene = s.scene.scene;

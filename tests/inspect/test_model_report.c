@@ -1,7 +1,7 @@
 /* The picture and the page of the models that texels have. */
 #include "base/atomic_file.h"
 #include "btf/material/models.h"
-#include "inspect/model_report.h"
+#include "inspect/inspect.h"
 #include "tests/compare/fixture.h"
 
 #include <stdlib.h>

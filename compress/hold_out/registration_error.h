@@ -1,6 +1,6 @@
 /* What it costs that photographs do not lie on each other exactly. */
-#ifndef WEFT_COMPRESS_HOLD_OUT_MISPLACED_H
-#define WEFT_COMPRESS_HOLD_OUT_MISPLACED_H
+#ifndef WEFT_COMPRESS_HOLD_OUT_REGISTRATION_ERROR_H
+#define WEFT_COMPRESS_HOLD_OUT_REGISTRATION_ERROR_H
 
 #include "btf/dataset/dataset.h"
 #include "btf/material/certificate.h"

@@ -1,4 +1,4 @@
-#include "edit/prune/reach_marks.h"
+#include "edit/prune/visibility_bounds.h"
 
 #include "btf/direction/square_map.h"
 
@@ -11,13 +11,13 @@ static const double place_margin = 1e-4, texel_margin = 0.02;
 
 /* ---- Texels ---- */
 
-static void mark_row(weft_reach *reach, int k, int row, int first, int count)
+static void mark_row(weft_visibility *visibility, int k, int row, int first, int count)
 {
-    int width = reach->width[k];
-    uint8_t *texel = reach->texel[k] + (size_t)row * (size_t)width;
+    int width = visibility->width[k];
+    uint8_t *texel = visibility->texel[k] + (size_t)row * (size_t)width;
     for (int i = 0; i < count; i++) {
         uint8_t *at = texel + (first + i) % width;
-        reach->texel_count[k] += !*at;
+        visibility->texel_count[k] += !*at;
         *at = 1;
     }
 }
@@ -30,18 +30,19 @@ static void texels_between(double low, double high, int count, int *first, int *
     *first = (int)(from - floor(from / count) * count);
 }
 
-void weft_reach_mark_texels(weft_reach *reach, const weft_reach_box *box, int first_level, int last_level)
+void weft_visibility_mark_texels(weft_visibility *visibility, const weft_visibility_box *box, int first_level,
+                                 int last_level)
 {
     for (int k = first_level; k <= last_level; k++) {
-        if (reach->texel_count[k] == (long)reach->width[k] * reach->height[k])
+        if (visibility->texel_count[k] == (long)visibility->width[k] * visibility->height[k])
             continue;
         int column, columns, row, rows;
         double u_low = box->low[0] - box->border[0], u_high = box->high[0] + box->border[0];
         double v_low = box->low[1] - box->border[1], v_high = box->high[1] + box->border[1];
-        texels_between(u_low, u_high, reach->width[k], &column, &columns);
-        texels_between(-v_high, -v_low, reach->height[k], &row, &rows);
+        texels_between(u_low, u_high, visibility->width[k], &column, &columns);
+        texels_between(-v_high, -v_low, visibility->height[k], &row, &rows);
         for (int i = 0; i < rows; i++)
-            mark_row(reach, k, (row + i) % reach->height[k], column, columns);
+            mark_row(visibility, k, (row + i) % visibility->height[k], column, columns);
     }
 }
 
@@ -65,10 +66,10 @@ static cell_box box_of(const weft_direction_cap *cap, int side)
     double theta = acos(weft_clamp(cap->axis.z, -1, 1)) + cap->angle_rad;
     if (theta > 2.6)
         return (cell_box){{0, side - 1}, {0, side - 1}};
-    double cosine = cos(theta / 2), reach = cap->angle_rad / (4 * cosine * cosine) + place_margin;
+    double cosine = cos(theta / 2), visibility = cap->angle_rad / (4 * cosine * cosine) + place_margin;
     weft_place place = weft_place_of_direction(cap->axis);
-    return (cell_box){{cell_of(place.x - reach, side), cell_of(place.x + reach, side)},
-                      {cell_of(place.y - reach, side), cell_of(place.y + reach, side)}};
+    return (cell_box){{cell_of(place.x - visibility, side), cell_of(place.x + visibility, side)},
+                      {cell_of(place.y - visibility, side), cell_of(place.y + visibility, side)}};
 }
 
 static void mark_box(uint8_t *map, int side, cell_box box)
@@ -95,52 +96,53 @@ static bool is_above_horizon(const weft_direction_cap *light)
 }
 
 /* Products of coordinates differ from those of the axes by no more than both angles. */
-static void mark_products(weft_reach *reach, const weft_direction_cap *view, const weft_direction_cap *light)
+static void mark_products(weft_visibility *visibility, const weft_direction_cap *view, const weft_direction_cap *light)
 {
     const double l[3] = {light->axis.x, light->axis.y, light->axis.z};
     const double v[3] = {view->axis.x, view->axis.y, view->axis.z};
     double slack = light->angle_rad + view->angle_rad;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            double *range = reach->product[i][j], product = l[i] * v[j];
+            double *range = visibility->product[i][j], product = l[i] * v[j];
             range[0] = fmax(fmin(range[0], product - slack), -1);
             range[1] = fmin(fmax(range[1], product + slack), 1);
         }
 }
 
-static void mark_lights(weft_reach *reach, cell_box views, cell_box lights)
+static void mark_lights(weft_visibility *visibility, cell_box views, cell_box lights)
 {
     for (int row = views.row[0]; row <= views.row[1]; row++)
         for (int column = views.column[0]; column <= views.column[1]; column++)
-            mark_box(reach->pair + (size_t)(row * WEFT_REACH_PAIR_SIDE + column) * WEFT_REACH_PAIR_CELLS,
-                     WEFT_REACH_PAIR_SIDE, lights);
+            mark_box(visibility->pair + (size_t)(row * WEFT_VISIBILITY_PAIR_SIDE + column) * WEFT_VISIBILITY_PAIR_CELLS,
+                     WEFT_VISIBILITY_PAIR_SIDE, lights);
 }
 
-void weft_reach_mark_pair(weft_reach *reach, const weft_direction_cap *view, const weft_direction_cap *light)
+void weft_visibility_mark_pair(weft_visibility *visibility, const weft_direction_cap *view,
+                               const weft_direction_cap *light)
 {
     const weft_direction_cap held = held_above(view);
-    mark_box(reach->view, WEFT_REACH_SIDE, box_of(&held, WEFT_REACH_SIDE));
+    mark_box(visibility->view, WEFT_VISIBILITY_SIDE, box_of(&held, WEFT_VISIBILITY_SIDE));
     if (!is_above_horizon(light))
         return;
-    mark_box(reach->light, WEFT_REACH_SIDE, box_of(light, WEFT_REACH_SIDE));
-    mark_lights(reach, box_of(&held, WEFT_REACH_PAIR_SIDE), box_of(light, WEFT_REACH_PAIR_SIDE));
-    mark_products(reach, &held, light);
+    mark_box(visibility->light, WEFT_VISIBILITY_SIDE, box_of(light, WEFT_VISIBILITY_SIDE));
+    mark_lights(visibility, box_of(&held, WEFT_VISIBILITY_PAIR_SIDE), box_of(light, WEFT_VISIBILITY_PAIR_SIDE));
+    mark_products(visibility, &held, light);
 }
 
-void weft_reach_mark_view(weft_reach *reach, const weft_direction_cap *view)
+void weft_visibility_mark_view(weft_visibility *visibility, const weft_direction_cap *view)
 {
     const weft_direction_cap held = held_above(view);
-    mark_box(reach->view, WEFT_REACH_SIDE, box_of(&held, WEFT_REACH_SIDE));
+    mark_box(visibility->view, WEFT_VISIBILITY_SIDE, box_of(&held, WEFT_VISIBILITY_SIDE));
 }
 
-_Static_assert(WEFT_REACH_SIDE == 2 * WEFT_REACH_PAIR_SIDE, "four cells of one square are one of the other");
+_Static_assert(WEFT_VISIBILITY_SIDE == 2 * WEFT_VISIBILITY_PAIR_SIDE, "four cells of one square are one of the other");
 
-void weft_reach_light_all(weft_reach *reach)
+void weft_visibility_light_all(weft_visibility *visibility)
 {
-    memset(reach->light, 1, sizeof reach->light);
-    for (int i = 0; i < WEFT_REACH_SIDE * WEFT_REACH_SIDE; i++) {
-        int cell = i / WEFT_REACH_SIDE / 2 * WEFT_REACH_PAIR_SIDE + i % WEFT_REACH_SIDE / 2;
-        if (reach->view[i])
-            memset(reach->pair + (size_t)cell * WEFT_REACH_PAIR_CELLS, 1, WEFT_REACH_PAIR_CELLS);
+    memset(visibility->light, 1, sizeof visibility->light);
+    for (int i = 0; i < WEFT_VISIBILITY_SIDE * WEFT_VISIBILITY_SIDE; i++) {
+        int cell = i / WEFT_VISIBILITY_SIDE / 2 * WEFT_VISIBILITY_PAIR_SIDE + i % WEFT_VISIBILITY_SIDE / 2;
+        if (visibility->view[i])
+            memset(visibility->pair + (size_t)cell * WEFT_VISIBILITY_PAIR_CELLS, 1, WEFT_VISIBILITY_PAIR_CELLS);
     }
 }

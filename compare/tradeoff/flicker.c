@@ -1,4 +1,4 @@
-#include "compare/tradeoff/strobing.h"
+#include "compare/tradeoff/flicker.h"
 
 #include "btf/direction/direction.h"
 
@@ -8,20 +8,20 @@ enum { PLACES = 4 /* along a side */, VIEWS = 4, LIGHTS = 53 };
 
 static const double view_deg = 30, outermost_deg = 65;
 
-void weft_strobing_add(const double *value, int count, weft_strobing *strobing)
+void weft_flicker_add(const double *value, int count, weft_flicker *flicker)
 {
     double largest = -INFINITY;
     for (int i = 0; i < count; i++) {
         largest = fmax(largest, value[i]);
-        strobing->moved += i > 0 ? fabs(value[i] - value[i - 1]) : 0;
+        flicker->moved += i > 0 ? fabs(value[i] - value[i - 1]) : 0;
     }
     if (count > 0)
-        strobing->needed += 2 * largest - value[0] - value[count - 1];
+        flicker->needed += 2 * largest - value[0] - value[count - 1];
 }
 
-double weft_strobing_excess(const weft_strobing *strobing)
+double weft_flicker_excess(const weft_flicker *flicker)
 {
-    return strobing->needed > 0 ? fmax(strobing->moved / strobing->needed - 1, 0) : 0; /* rounding */
+    return flicker->needed > 0 ? fmax(flicker->moved / flicker->needed - 1, 0) : 0; /* rounding */
 }
 
 /* Light number i of a sweep in the plane of azimuth phi. */
@@ -31,7 +31,7 @@ static weft_vec3 light_of_sweep(int i, double phi)
     return (weft_vec3){sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
 }
 
-static weft_code sweep(weft_model *model, double u, double v, double phi, weft_strobing *strobing, weft_error *error)
+static weft_code sweep(weft_model *model, double u, double v, double phi, weft_flicker *flicker, weft_error *error)
 {
     double value[LIGHTS];
     int count = 0;
@@ -45,18 +45,18 @@ static weft_code sweep(weft_model *model, double u, double v, double phi, weft_s
         if (!isnan(mean))
             value[count++] = mean;
     }
-    weft_strobing_add(value, count, strobing);
+    weft_flicker_add(value, count, flicker);
     return WEFT_OK;
 }
 
-weft_code weft_strobing_measure(weft_model *model, double *excess, weft_error *error)
+weft_code weft_flicker_measure(weft_model *model, double *excess, weft_error *error)
 {
-    weft_strobing strobing = {0};
+    weft_flicker flicker = {0};
     for (int i = 0; i < PLACES * PLACES * VIEWS; i++) {
         int place = i / VIEWS;
         double u = (place % PLACES + 0.37) / PLACES, v = (place / PLACES + 0.61) / PLACES;
-        WEFT_TRY(sweep(model, u, v, 2 * WEFT_PI * (i % VIEWS) / VIEWS, &strobing, error));
+        WEFT_TRY(sweep(model, u, v, 2 * WEFT_PI * (i % VIEWS) / VIEWS, &flicker, error));
     }
-    *excess = weft_strobing_excess(&strobing);
+    *excess = weft_flicker_excess(&flicker);
     return WEFT_OK;
 }

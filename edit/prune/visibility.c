@@ -1,7 +1,6 @@
-#include "edit/prune/reach.h"
+#include "edit/prune/visibility.h"
 
-#include "edit/prune/reach_marks.h"
-#include "edit/prune/surface_patch.h"
+#include "edit/prune/visibility_bounds.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +11,8 @@ enum { MOST_HALVINGS = 12, MOST_QUARTERS = 7, QUARTERS_FOR_AXES = 2 };
 
 /* One search. */
 typedef struct search {
-    const weft_reach_scene *scene;
-    weft_reach *reach;
+    const weft_prune_scene *scene;
+    weft_visibility *visibility;
     weft_vec3 centre;
     double radius;
     double level_bias;
@@ -36,7 +35,7 @@ static void levels_of(const search *s, double low, double high, int *first, int 
         low = floor(low + 0.5);
         high = floor(high + 0.5);
     }
-    int coarsest = s->reach->level_count - 1;
+    int coarsest = s->visibility->level_count - 1;
     *first = (int)floor(weft_clamp(low, 0, coarsest));
     *last = (int)ceil(weft_clamp(high, 0, coarsest));
 }
@@ -47,17 +46,17 @@ static void mark_side(search *s, const weft_camera_span *span, const weft_patch_
 {
     weft_direction_cap view = behind ? weft_cap_behind(&bounds->view) : bounds->view;
     if (s->scene->scene.environment)
-        weft_reach_mark_view(s->reach, &view);
+        weft_visibility_mark_view(s->visibility, &view);
     for (int i = 0; i < span->light_count && !s->scene->scene.environment; i++) {
         weft_direction_cap light = behind ? weft_cap_behind(&bounds->light[i]) : bounds->light[i];
-        weft_reach_mark_pair(s->reach, &view, &light);
+        weft_visibility_mark_pair(s->visibility, &view, &light);
     }
 }
 
 /* The back of the cloth is mirrored in u. */
 static void mark_place(search *s, const weft_patch *p, const weft_patch_bounds *bounds, bool behind)
 {
-    weft_reach_box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, {s->border[0], s->border[1]}};
+    weft_visibility_box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, {s->border[0], s->border[1]}};
     int first, last;
     for (int i = 0; i < 3; i++) {
         const double place[2] = {behind ? -p->corner[i].u : p->corner[i].u, p->corner[i].v};
@@ -67,10 +66,10 @@ static void mark_place(search *s, const weft_patch *p, const weft_patch_bounds *
         }
     }
     double low = bounds->level_low + s->level_bias, high = bounds->level_high + s->level_bias;
-    s->reach->level_low = fmin(s->reach->level_low, low);
-    s->reach->level_high = fmax(s->reach->level_high, high);
+    s->visibility->level_low = fmin(s->visibility->level_low, low);
+    s->visibility->level_high = fmax(s->visibility->level_high, high);
     levels_of(s, low, high, &first, &last);
-    weft_reach_mark_texels(s->reach, &box, first, last);
+    weft_visibility_mark_texels(s->visibility, &box, first, last);
 }
 
 static void visit(search *s, const weft_camera_span *span, const weft_patch *p, int quarters)
@@ -99,11 +98,11 @@ static void visit(search *s, const weft_camera_span *span, const weft_patch *p, 
 
 static void visit_span(search *s, const weft_scene *low, const weft_scene *high)
 {
-    const weft_reach_scene *scene = s->scene;
+    const weft_prune_scene *scene = s->scene;
     const weft_camera_span span = weft_camera_span_of(low, high, s->centre, s->radius, scene->width, scene->height);
     for (int i = 0; i < s->patch_count; i++)
         visit(s, &span, &s->patch[i], 0);
-    s->reach->span_count++;
+    s->visibility->span_count++;
 }
 
 static void visit_times(search *s, double from_s, double to_s, int halvings)
@@ -177,23 +176,24 @@ static void find_border(search *s, const weft_material *material)
             10 * fmax(fabs((double)heights->low_mm), fabs((double)heights->high_mm)) / heights->size_mm[axis];
 }
 
-static weft_code allocate(const weft_material *material, weft_reach *reach, weft_error *error)
+static weft_code allocate(const weft_material *material, weft_visibility *visibility, weft_error *error)
 {
-    size_t pairs = (size_t)WEFT_REACH_PAIR_CELLS * WEFT_REACH_PAIR_CELLS;
-    *reach = (weft_reach){.level_count = material->level_count, .level_low = INFINITY, .level_high = -INFINITY};
+    size_t pairs = (size_t)WEFT_VISIBILITY_PAIR_CELLS * WEFT_VISIBILITY_PAIR_CELLS;
+    *visibility =
+        (weft_visibility){.level_count = material->level_count, .level_low = INFINITY, .level_high = -INFINITY};
     for (int i = 0; i < 9; i++) {
-        reach->product[i / 3][i % 3][0] = INFINITY;
-        reach->product[i / 3][i % 3][1] = -INFINITY;
+        visibility->product[i / 3][i % 3][0] = INFINITY;
+        visibility->product[i / 3][i % 3][1] = -INFINITY;
     }
-    reach->pair = calloc(pairs, 1);
-    if (!reach->pair)
+    visibility->pair = calloc(pairs, 1);
+    if (!visibility->pair)
         return weft_fail_memory(error, "pairs of directions", pairs);
     for (int k = 0; k < material->level_count; k++) {
-        reach->width[k] = material->level[k].width;
-        reach->height[k] = material->level[k].height;
-        size_t texels = (size_t)reach->width[k] * (size_t)reach->height[k];
-        reach->texel[k] = calloc(texels, 1);
-        if (!reach->texel[k])
+        visibility->width[k] = material->level[k].width;
+        visibility->height[k] = material->level[k].height;
+        size_t texels = (size_t)visibility->width[k] * (size_t)visibility->height[k];
+        visibility->texel[k] = calloc(texels, 1);
+        if (!visibility->texel[k])
             return weft_fail_memory(error, "texels that are seen", texels);
     }
     return WEFT_OK;
@@ -202,7 +202,7 @@ static weft_code allocate(const weft_material *material, weft_reach *reach, weft
 static weft_code find(search *s, const weft_material *material, const weft_progress *progress, weft_error *error)
 {
     float centre[3], radius;
-    WEFT_TRY(allocate(material, s->reach, error));
+    WEFT_TRY(allocate(material, s->visibility, error));
     weft_mesh_bounds(s->scene->mesh, centre, &radius);
     s->centre = weft_vec3_of(centre[0], centre[1], centre[2]);
     s->radius = radius;
@@ -211,28 +211,28 @@ static weft_code find(search *s, const weft_material *material, const weft_progr
     WEFT_TRY(cut_mesh(s, material, error));
     visit_path(s, progress);
     if (s->scene->scene.environment)
-        weft_reach_light_all(s->reach);
-    return s->reach->level_low < INFINITY
+        weft_visibility_light_all(s->visibility);
+    return s->visibility->level_low < INFINITY
                ? WEFT_OK
                : weft_fail(error, WEFT_BAD_INPUT,
                            "nothing of the mesh is ever in the picture: check the camera and its path");
 }
 
-weft_code weft_reach_find(const weft_reach_scene *scene, const weft_material *material, const weft_progress *progress,
-                          weft_reach *reach, weft_error *error)
+weft_code weft_visibility_find(const weft_prune_scene *scene, const weft_material *material,
+                               const weft_progress *progress, weft_visibility *visibility, weft_error *error)
 {
-    search s = {.scene = scene, .reach = reach};
+    search s = {.scene = scene, .visibility = visibility};
     weft_code code = find(&s, material, progress, error);
     free(s.patch);
     if (code != WEFT_OK)
-        weft_reach_free(reach);
+        weft_visibility_free(visibility);
     return code;
 }
 
-void weft_reach_free(weft_reach *reach)
+void weft_visibility_free(weft_visibility *visibility)
 {
-    for (int k = 0; k < reach->level_count; k++)
-        free(reach->texel[k]);
-    free(reach->pair);
-    *reach = (weft_reach){0};
+    for (int k = 0; k < visibility->level_count; k++)
+        free(visibility->texel[k]);
+    free(visibility->pair);
+    *visibility = (weft_visibility){0};
 }

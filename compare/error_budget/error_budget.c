@@ -1,4 +1,4 @@
-#include "compare/error_budget/sources.h"
+#include "compare/error_budget/error_budget.h"
 
 #include "base/atomic_file.h"
 #include "btf/file_kind.h"
@@ -27,8 +27,8 @@ static weft_code scale_to_tiles(const char *cloth, double tiles, weft_virtual_se
     return WEFT_OK;
 }
 
-static weft_code split_error(const weft_sources_request *request, const weft_source_stages *stages,
-                             const weft_progress *progress, weft_sources *result, weft_error *error)
+static weft_code split_error(const weft_error_budget_request *request, const weft_source_stages *stages,
+                             const weft_progress *progress, weft_error_budget *result, weft_error *error)
 {
     const weft_source_queries *queries = &request->queries;
     weft_source_answer *answer = calloc((size_t)queries->count, sizeof *answer);
@@ -42,8 +42,8 @@ static weft_code split_error(const weft_sources_request *request, const weft_sou
     return code;
 }
 
-static weft_code measure(const weft_sources_request *request, weft_virtual_rig *rig, const weft_progress *progress,
-                         weft_sources *result, weft_error *error)
+static weft_code measure(const weft_error_budget_request *request, weft_virtual_rig *rig, const weft_progress *progress,
+                         weft_error_budget *result, weft_error *error)
 {
     weft_chain chain;
     weft_code code = weft_chain_make(&request->chain, rig, request->folder, progress, &chain, error);
@@ -57,12 +57,12 @@ static weft_code measure(const weft_sources_request *request, weft_virtual_rig *
     return code;
 }
 
-weft_code weft_sources_measure(const weft_sources_request *request, const char *cloth, const weft_progress *progress,
-                               weft_sources *result, weft_error *error)
+weft_code weft_error_budget_measure(const weft_error_budget_request *request, const char *cloth,
+                                    const weft_progress *progress, weft_error_budget *result, weft_error *error)
 {
     weft_virtual_request wanted = {cloth, request->queries.seed, request->rig};
     weft_virtual_rig rig;
-    *result = (weft_sources){.size = request->chain.size};
+    *result = (weft_error_budget){.size = request->chain.size};
     WEFT_TRY(scale_to_tiles(cloth, request->tiles, &wanted.settings, error));
     WEFT_TRY(weft_make_folder(request->folder, error));
     WEFT_TRY(weft_virtual_rig_open(&wanted, &rig, error));
