@@ -38,27 +38,27 @@ static bool measure_warp(const bench *b, json_t *packed, warp *result)
     const weft_dataset_layout *layout = weft_dataset_get_layout(b->dataset);
     weft_homography found;
     double(*m)[3] = found.m;
-    int view, stay, used;
-    if (json_unpack(packed, "{si si si s[[FFF][FFF][FFF]]}", "view", &view, "stay", &stay, "used", &used,
+    int view, viewpoint, used;
+    if (json_unpack(packed, "{si si si s[[FFF][FFF][FFF]]}", "view", &view, "stay", &viewpoint, "used", &used,
                     "plate_mm_to_undistorted_pixels", &m[0][0], &m[0][1], &m[0][2], &m[1][0], &m[1][1], &m[1][2],
                     &m[2][0], &m[2][1], &m[2][2]) != 0 ||
-        view < 0 || view >= layout->view_count || stay < 0 || stay >= b->real.stay_count)
+        view < 0 || view >= layout->view_count || viewpoint < 0 || viewpoint >= b->real.viewpoint_count)
         return false;
     *result = (warp){.ring = ring_of_view(b, view), .found = used > 0};
     if (result->found)
-        result->error_texels = truth_warp_error_texels(&b->real, &b->session.camera, stay, &found, layout->width);
+        result->error_texels = truth_warp_error_texels(&b->real, &b->session.camera, viewpoint, &found, layout->width);
     return true;
 }
 
 static weft_code measure_warps(bench *b, weft_error *error)
 {
     json_t *root = json_loads(weft_dataset_get_layout(b->dataset)->provenance, 0, NULL);
-    json_t *stays = json_object_get(root, "stays");
-    size_t count = json_array_size(stays);
+    json_t *viewpoints = json_object_get(root, "stays");
+    size_t count = json_array_size(viewpoints);
     bool good = count > 0;
     b->warp = calloc(count + 1, sizeof *b->warp);
     for (size_t i = 0; b->warp && good && i < count; i++)
-        good = measure_warp(b, json_array_get(stays, i), &b->warp[i]);
+        good = measure_warp(b, json_array_get(viewpoints, i), &b->warp[i]);
     b->warp_count = (int)count;
     json_decref(root);
     if (!b->warp)

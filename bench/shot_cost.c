@@ -22,9 +22,9 @@ typedef struct idle {
     double wait_s, spent_s; /* of a photograph; in all of them */
 } idle;
 
-static weft_code home(void *device, int first_stay, weft_error *error)
+static weft_code home(void *device, int first_viewpoint, weft_error *error)
 {
-    (void)device, (void)first_stay, (void)error;
+    (void)device, (void)first_viewpoint, (void)error;
     return WEFT_OK;
 }
 

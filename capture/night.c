@@ -19,7 +19,7 @@ typedef struct run {
     int camera_count;
     weft_camera_at_work *camera; /* [camera_count] */
     double start_s;
-    int stays_told; /* of all cameras, when their common page was written last */
+    int viewpoints_told; /* of all cameras, when their common page was written last */
 } run;
 
 /* The first of two failures counts. */
@@ -132,21 +132,21 @@ static void note_failure(const run *r, weft_camera_at_work *c, const weft_exposi
     c->left_out = r->camera_count == 1 || c->failures >= MOST_FAILURES;
 }
 
-static int count_stays(const run *r)
+static int count_viewpoints(const run *r)
 {
-    int stays = 0;
+    int viewpoints = 0;
     for (int i = 0; i < r->camera_count; i++)
-        stays += r->camera[i].shooting.stay + 1;
-    return stays;
+        viewpoints += r->camera[i].shooting.viewpoint + 1;
+    return viewpoints;
 }
 
 /* On the page of all cameras, when one of them has moved on. */
 static weft_code tell(run *r, weft_error *error)
 {
-    int stays = count_stays(r);
-    if (stays == r->stays_told)
+    int viewpoints = count_viewpoints(r);
+    if (viewpoints == r->viewpoints_told)
         return WEFT_OK;
-    r->stays_told = stays;
+    r->viewpoints_told = viewpoints;
     return weft_night_overview_write(r->night, r->camera, r->camera_count, r->start_s, NULL, error);
 }
 
@@ -225,7 +225,7 @@ static weft_code begin_camera(const weft_night *night, weft_rig *rig, weft_held_
     *c = (weft_camera_at_work){.rig = rig, .session = &held->session, .damaged = held->damaged};
     for (int shot = 0; shot < c->session->shot_count; shot++)
         c->found += c->session->record[shot].taken;
-    WEFT_TRY(weft_shooting_begin(rig, c->session, held->next_stay, &c->shooting, error));
+    WEFT_TRY(weft_shooting_begin(rig, c->session, held->next_viewpoint, &c->shooting, error));
     WEFT_TRY(weft_night_page_begin(night, c, error));
     weft_code seen = weft_sensor_frames_take(rig, c->session, night->stop, night->progress, &c->failure);
     if (seen != WEFT_OK) {

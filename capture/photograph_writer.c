@@ -20,7 +20,7 @@ struct weft_photograph_writer {
     pthread_cond_t changed;
     bool busy, closing; /* a photograph is waiting or being written; no more will come */
     int shot;
-    int unsynced_shot; /* one of the stay whose names and journal lines may not be on the disk; -1: none */
+    int unsynced_shot; /* one of the viewpoint whose names and journal lines may not be on the disk; -1: none */
     weft_shot_record record;
     weft_code code;
     weft_error error;
@@ -40,8 +40,9 @@ static weft_code make_folder_of(const char *path, weft_error *error)
     return weft_make_folder(folder, error);
 }
 
-/* The photographs of the last stay are on the disk already; now their names are, and then the journal that has them. */
-static weft_code sync_stay(weft_photograph_writer *writer, weft_error *error)
+/* The photographs of the last viewpoint are on the disk already; now their names are, and then the journal that has
+ * them. */
+static weft_code sync_viewpoint(weft_photograph_writer *writer, weft_error *error)
 {
     char path[PATH_MAX];
     if (writer->unsynced_shot < 0)
@@ -52,10 +53,10 @@ static weft_code sync_stay(weft_photograph_writer *writer, weft_error *error)
     return weft_session_sync(writer->session, error);
 }
 
-static bool begins_stay(const weft_photograph_writer *writer)
+static bool begins_viewpoint(const weft_photograph_writer *writer)
 {
     int before = writer->unsynced_shot;
-    return before >= 0 && writer->session->record[before].stay != writer->record.stay;
+    return before >= 0 && writer->session->record[before].viewpoint != writer->record.viewpoint;
 }
 
 weft_code weft_photograph_store(const weft_session *session, const char *path, const uint16_t *samples, uint64_t *bytes,
@@ -94,8 +95,8 @@ static weft_code store(weft_photograph_writer *writer, weft_error *error)
     weft_session *session = writer->session;
     weft_shot_record record = writer->record;
     char path[PATH_MAX];
-    if (begins_stay(writer))
-        WEFT_TRY(sync_stay(writer, error));
+    if (begins_viewpoint(writer))
+        WEFT_TRY(sync_viewpoint(writer, error));
     for (int i = 0; i < record.bracket_count; i++) {
         weft_bracket_record *bracket = &record.bracket[i];
         weft_session_bracket_path(session, writer->shot, i, path, sizeof path);
@@ -220,7 +221,7 @@ weft_code weft_photograph_writer_finish(weft_photograph_writer *writer, weft_err
     pthread_mutex_unlock(&writer->mutex);
     pthread_join(writer->thread, NULL);
     weft_error last = {0};
-    weft_code synced = sync_stay(writer, &last);
+    weft_code synced = sync_viewpoint(writer, &last);
     if (writer->code == WEFT_OK) {
         writer->code = synced;
         writer->error = last;

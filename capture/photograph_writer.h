@@ -24,16 +24,16 @@ weft_code weft_photograph_writer_start(weft_session *session, int brackets, weft
  * submitted. */
 uint16_t *weft_photograph_writer_buffer(weft_photograph_writer *writer);
 
-/* Hands over the buffer: the photographs of `shot`, of which `record` holds stay and exposures. Waits until the
+/* Hands over the buffer: the photographs of `shot`, of which `record` holds viewpoint and exposures. Waits until the
  * photograph before it is written, so at most one is under way. A file appears under its final name when it is
- * complete and on the disk, and after that the journal names the shot. Names and journal are synced when a stay is
- * over, so that a power cut takes the photographs of one stay at most. Errors: the first failure of an earlier
+ * complete and on the disk, and after that the journal names the shot. Names and journal are synced when a viewpoint is
+ * over, so that a power cut takes the photographs of one viewpoint at most. Errors: the first failure of an earlier
  * photograph. */
 weft_code weft_photograph_writer_submit(weft_photograph_writer *writer, int shot, const weft_shot_record *record,
                                         weft_error *error);
 
-/* Waits for the last photograph, syncs its stay, ends the thread and frees the writer. Errors: the first failure, if
- * submit has not reported it. */
+/* Waits for the last photograph, syncs its viewpoint, ends the thread and frees the writer. Errors: the first failure,
+ * if submit has not reported it. */
 weft_code weft_photograph_writer_finish(weft_photograph_writer *writer, weft_error *error);
 
 #endif

@@ -44,16 +44,17 @@ static void sweep(const char *folder)
 
 /* ---- New or known ---- */
 
-weft_code weft_refuse_foreign_files(const char *folder, weft_error *error)
+weft_code weft_refuse_unexpected_files(const char *folder, weft_error *error)
 {
     DIR *listing = opendir(folder);
     if (!listing)
         return weft_fail_errno(error, "list folder", folder);
-    bool foreign = false;
+    bool has_others = false;
     for (struct dirent *entry; (entry = readdir(listing));)
-        foreign = foreign || entry->d_name[0] != '.';
+        has_others = has_others || entry->d_name[0] != '.';
     closedir(listing);
-    return foreign ? weft_fail(error, WEFT_BAD_INPUT, "folder '%s' is neither empty nor a session", folder) : WEFT_OK;
+    return has_others ? weft_fail(error, WEFT_BAD_INPUT, "folder '%s' is neither empty nor a session", folder)
+                      : WEFT_OK;
 }
 
 static weft_code create_or_open(const weft_session *wanted, weft_session *session, weft_error *error)
@@ -61,7 +62,7 @@ static weft_code create_or_open(const weft_session *wanted, weft_session *sessio
     char path[PATH_MAX];
     snprintf(path, sizeof path, "%s/session.json", wanted->folder);
     if (access(path, F_OK) != 0) {
-        WEFT_TRY(weft_refuse_foreign_files(wanted->folder, error));
+        WEFT_TRY(weft_refuse_unexpected_files(wanted->folder, error));
         WEFT_TRY(weft_session_create(wanted, error));
     }
     /* Also a new session is read back, so that it is the same numbers that a later run will work with. */
@@ -181,10 +182,10 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
 /* ---- Are the photographs there? ---- */
 
 /* What the journal has and the check finds wrong is taken again. */
-static void forget_faulty(const weft_session_faults *faults, weft_held_session *held)
+static void forget_damaged(const weft_session_problems *problems, weft_held_session *held)
 {
-    for (int i = 0; i < faults->count; i++) {
-        int shot = faults->fault[i].shot, frame = faults->fault[i].frame;
+    for (int i = 0; i < problems->count; i++) {
+        int shot = problems->problem[i].shot, frame = problems->problem[i].frame;
         if (frame >= 0)
             held->session.frame[frame].taken = false;
         if (shot < 0 || !held->session.record[shot].taken)
@@ -196,21 +197,21 @@ static void forget_faulty(const weft_session_faults *faults, weft_held_session *
 
 static weft_code check_photographs(weft_held_session *held, const weft_progress *progress, weft_error *error)
 {
-    weft_session_faults faults;
-    WEFT_TRY(weft_session_check(&held->session, progress, &faults, error));
-    forget_faulty(&faults, held);
-    weft_session_faults_free(&faults);
+    weft_session_problems problems;
+    WEFT_TRY(weft_session_check(&held->session, progress, &problems, error));
+    forget_damaged(&problems, held);
+    weft_session_problems_free(&problems);
     return WEFT_OK;
 }
 
-static int count_stays(const weft_session *session)
+static int count_viewpoints(const weft_session *session)
 {
-    int stays = 0;
+    int viewpoints = 0;
     for (int i = 0; i < session->shot_count; i++) {
-        if (session->record[i].taken && session->record[i].stay >= stays)
-            stays = session->record[i].stay + 1;
+        if (session->record[i].taken && session->record[i].viewpoint >= viewpoints)
+            viewpoints = session->record[i].viewpoint + 1;
     }
-    return stays;
+    return viewpoints;
 }
 
 static weft_code hold(const weft_session *wanted, const weft_progress *progress, weft_held_session *held,
@@ -220,7 +221,7 @@ static weft_code hold(const weft_session *wanted, const weft_progress *progress,
     sweep(wanted->folder);
     WEFT_TRY(create_or_open(wanted, &held->session, error));
     WEFT_TRY(check_same(wanted, &held->session, error));
-    held->next_stay = count_stays(&held->session);
+    held->next_viewpoint = count_viewpoints(&held->session);
     return check_photographs(held, progress, error);
 }
 
@@ -274,7 +275,7 @@ weft_code weft_camera_folder_prepare(const char *folder, const weft_camera_list 
                    : weft_fail(error, WEFT_BAD_INPUT,
                                "session '%s' was begun with other cameras; repeat them or choose another folder",
                                folder);
-    WEFT_TRY(weft_refuse_foreign_files(folder, error));
+    WEFT_TRY(weft_refuse_unexpected_files(folder, error));
     return weft_camera_list_write(folder, list, error);
 }
 

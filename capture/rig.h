@@ -40,11 +40,11 @@ typedef struct weft_place {
 /* Functions that may be NULL say what is then understood. */
 typedef struct weft_rig_stage {
     void *device;
-    /* Drives all axes to their references; called once before the first photograph. The session has seen `first_stay`
-     * stays of the camera so far, so that this is the number of the next one. */
-    weft_code (*home)(void *device, int first_stay, weft_error *error);
+    /* Drives all axes to their references; called once before the first photograph. The session has seen
+     * `first_viewpoint` viewpoints of the camera so far, so that this is the number of the next one. */
+    weft_code (*home)(void *device, int first_viewpoint, weft_error *error);
     /* Takes up the pose of a photograph. *moved receives whether the camera turned against the sample, or may have: if
-     * so, the photographs that follow belong to a new stay. The first call after home always moves. */
+     * so, the photographs that follow belong to a new viewpoint. The first call after home always moves. */
     weft_code (*move)(void *device, weft_angles view, weft_angles light, bool *moved, weft_error *error);
     /* Whether the axes stand where the last move left them, and have stood there since; NULL: nothing disturbs them. */
     weft_code (*held)(void *device, bool *held, weft_error *error);

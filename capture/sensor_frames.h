@@ -1,5 +1,5 @@
 /* Frames of the sensor, taken before the first shot: without light, and of an even field. Registration finds the faults
- * of the sensor in them (registration/radiometry/sensor_faults.h). */
+ * of the sensor in them (registration/radiometry/sensor_defects.h). */
 #ifndef WEFT_CAPTURE_SENSOR_FRAMES_H
 #define WEFT_CAPTURE_SENSOR_FRAMES_H
 

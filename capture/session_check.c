@@ -1,40 +1,12 @@
 #include "capture/session_check.h"
 
-#include "base/atomic_file.h"
 #include "base/picture/image.h"
-#include "capture/doubled.h"
 #include "capture/file_crc.h"
-#include "capture/foreign.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-const char *const weft_session_fault_name[WEFT_FAULT_KINDS] = {"missing", "damaged", "doubled", "foreign"};
-
-void weft_session_faults_free(weft_session_faults *faults)
-{
-    for (int i = 0; i < faults->count; i++)
-        free(faults->fault[i].text);
-    free(faults->fault);
-    *faults = (weft_session_faults){0};
-}
-
-weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_fault_kind kind, int shot, const char *text,
-                                  weft_error *error)
-{
-    size_t bytes = ((size_t)faults->count + 1) * sizeof *faults->fault;
-    char *copy = strdup(text);
-    weft_session_fault *grown = copy ? realloc(faults->fault, bytes) : NULL;
-    if (!grown) {
-        free(copy);
-        return weft_fail_memory(error, "faults of a session", bytes);
-    }
-    faults->fault = grown;
-    faults->fault[faults->count++] = (weft_session_fault){kind, shot, -1, copy};
-    return WEFT_OK;
-}
 
 /* ---- One shot ---- */
 
@@ -70,15 +42,15 @@ static weft_code check_picture(const weft_session *session, const char *path, we
 }
 
 static weft_code check_file(const weft_session *session, const char *path, expected_file expected,
-                            weft_session_fault_kind *kind, weft_error *what)
+                            weft_session_problem_kind *kind, weft_error *what)
 {
-    *kind = access(path, F_OK) == 0 ? WEFT_FAULT_DAMAGED : WEFT_FAULT_MISSING;
+    *kind = access(path, F_OK) == 0 ? WEFT_PROBLEM_DAMAGED : WEFT_PROBLEM_MISSING;
     WEFT_TRY(check_bytes(path, &expected, what));
     return check_picture(session, path, what);
 }
 
 /* What is wrong with a shot is an error of `what`, and its kind. */
-static weft_code check_shot(const weft_session *session, int shot, weft_session_fault_kind *kind, weft_error *what)
+static weft_code check_shot(const weft_session *session, int shot, weft_session_problem_kind *kind, weft_error *what)
 {
     char path[PATH_MAX];
     weft_session_photograph_path(session, shot, path, sizeof path);
@@ -96,21 +68,21 @@ static weft_code check_shot(const weft_session *session, int shot, weft_session_
 
 /* What the threads that check shots share. */
 typedef struct shot_checks {
-    weft_session_faults *faults;
+    weft_session_problems *problems;
     const weft_progress *progress;
     long done, total;
     weft_code code;
     weft_error *error;
 } shot_checks;
 
-/* Short memory is no fault of the session. */
-static void note(shot_checks *checks, int shot, weft_session_fault_kind kind, weft_code found, const weft_error *what)
+/* Short memory is no problem of the session. */
+static void note(shot_checks *checks, int shot, weft_session_problem_kind kind, weft_code found, const weft_error *what)
 {
     weft_progress_report(checks->progress, "checking photographs", ++checks->done, checks->total);
     if (found == WEFT_OK || checks->code != WEFT_OK)
         return;
     if (found == WEFT_BAD_INPUT) {
-        checks->code = weft_session_faults_add(checks->faults, kind, shot, what->message, checks->error);
+        checks->code = weft_session_problems_add(checks->problems, kind, shot, what->message, checks->error);
         return;
     }
     checks->code = found;
@@ -126,16 +98,16 @@ static long count_taken(const weft_session *session)
     return taken;
 }
 
-static weft_code check_shots(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
-                             weft_error *error)
+static weft_code check_shots(const weft_session *session, const weft_progress *progress,
+                             weft_session_problems *problems, weft_error *error)
 {
-    shot_checks checks = {.faults = faults, .progress = progress, .total = count_taken(session), .error = error};
+    shot_checks checks = {.problems = problems, .progress = progress, .total = count_taken(session), .error = error};
 #pragma omp parallel for schedule(dynamic, 16)
     for (int shot = 0; shot < session->shot_count; shot++) {
         if (!session->record[shot].taken)
             continue;
         weft_error what = {0};
-        weft_session_fault_kind kind = WEFT_FAULT_MISSING;
+        weft_session_problem_kind kind = WEFT_PROBLEM_MISSING;
         weft_code found = check_shot(session, shot, &kind, &what);
 #pragma omp critical
         note(&checks, shot, kind, found, &what);
@@ -145,20 +117,20 @@ static weft_code check_shots(const weft_session *session, const weft_progress *p
 
 /* ---- Frames of the sensor ---- */
 
-static weft_code check_frames(const weft_session *session, weft_session_faults *faults, weft_error *error)
+static weft_code check_frames(const weft_session *session, weft_session_problems *problems, weft_error *error)
 {
     for (int frame = 0; frame < weft_session_frame_count(session); frame++) {
         const weft_frame_record *record = &session->frame[frame];
         char path[PATH_MAX];
         weft_error what = {0};
-        weft_session_fault_kind kind = WEFT_FAULT_MISSING;
+        weft_session_problem_kind kind = WEFT_PROBLEM_MISSING;
         weft_session_frame_path(session, frame, path, sizeof path);
         weft_code found = record->taken
                               ? check_file(session, path, (expected_file){record->bytes, record->crc32}, &kind, &what)
                               : WEFT_OK;
         if (found == WEFT_BAD_INPUT) {
-            WEFT_TRY(weft_session_faults_add(faults, kind, -1, what.message, error));
-            faults->fault[faults->count - 1].frame = frame;
+            WEFT_TRY(weft_session_problems_add(problems, kind, -1, what.message, error));
+            problems->problem[problems->count - 1].frame = frame;
         } else if (found != WEFT_OK) {
             if (error)
                 *error = what;
@@ -168,27 +140,27 @@ static weft_code check_frames(const weft_session *session, weft_session_faults *
     return WEFT_OK;
 }
 
-static int compare_faults(const void *a, const void *b)
+static int compare_problems(const void *a, const void *b)
 {
-    const weft_session_fault *p = a, *q = b;
+    const weft_session_problem *p = a, *q = b;
     int shots = (p->shot > q->shot) - (p->shot < q->shot);
     return shots ? shots : p->frame - q->frame;
 }
 
-weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
-                             weft_error *error)
+weft_code weft_session_check(const weft_session *session, const weft_progress *progress,
+                             weft_session_problems *problems, weft_error *error)
 {
-    *faults = (weft_session_faults){0};
-    weft_code code = check_frames(session, faults, error);
+    *problems = (weft_session_problems){0};
+    weft_code code = check_frames(session, problems, error);
     if (code == WEFT_OK)
-        code = check_shots(session, progress, faults, error);
+        code = check_shots(session, progress, problems, error);
     if (code == WEFT_OK)
-        code = weft_find_doubled(session, faults, error);
-    if (faults->count > 1)
-        qsort(faults->fault, (size_t)faults->count, sizeof *faults->fault, compare_faults);
+        code = weft_find_duplicates(session, problems, error);
+    if (problems->count > 1)
+        qsort(problems->problem, (size_t)problems->count, sizeof *problems->problem, compare_problems);
     if (code == WEFT_OK)
-        code = weft_find_foreign(session, faults, error);
+        code = weft_find_unexpected(session, problems, error);
     if (code != WEFT_OK)
-        weft_session_faults_free(faults);
+        weft_session_problems_free(problems);
     return code;
 }

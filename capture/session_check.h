@@ -5,45 +5,55 @@
 #include "base/progress.h"
 #include "btf/session/camera_list.h"
 
-typedef enum weft_session_fault_kind {
-    WEFT_FAULT_MISSING, /* a photograph that the journal names is gone */
-    WEFT_FAULT_DAMAGED, /* a photograph of other bytes than the journal says, or that cannot be read */
-    WEFT_FAULT_DOUBLED, /* a photograph with the bytes of another shot, which was taken before it: the camera handed
+typedef enum weft_session_problem_kind {
+    WEFT_PROBLEM_MISSING,   /* a photograph that the journal names is gone */
+    WEFT_PROBLEM_DAMAGED,   /* a photograph of other bytes than the journal says, or that cannot be read */
+    WEFT_PROBLEM_DUPLICATE, /* a photograph with the bytes of another shot, which was taken before it: the camera handed
                            over an old one, for its noise repeats nothing */
-    WEFT_FAULT_FOREIGN, /* a file that belongs to no shot of the plan */
-    WEFT_FAULT_KINDS
-} weft_session_fault_kind;
+    WEFT_PROBLEM_UNEXPECTED, /* a file that belongs to no shot of the plan */
+    WEFT_PROBLEM_KINDS
+} weft_session_problem_kind;
 
-/* "missing", "damaged", "doubled", "foreign". */
-extern const char *const weft_session_fault_name[WEFT_FAULT_KINDS];
+/* "missing", "damaged", "duplicate", "unexpected". */
+extern const char *const weft_session_problem_name[WEFT_PROBLEM_KINDS];
 
-typedef struct weft_session_fault {
-    weft_session_fault_kind kind;
-    int shot;   /* which is to be taken again; -1 for a foreign file and for a frame of the sensor */
+typedef struct weft_session_problem {
+    weft_session_problem_kind kind;
+    int shot;   /* which is to be taken again; -1 for an unexpected file and for a frame of the sensor */
     int frame;  /* of the sensor, to be taken again; -1 for others */
     char *text; /* one line that names the file and what is wrong; owned */
-} weft_session_fault;
+} weft_session_problem;
 
-typedef struct weft_session_faults {
+typedef struct weft_session_problems {
     int count;
-    weft_session_fault *fault; /* [count] those of frames of the sensor, of shots in the order of the plan, then foreign
-                                  files; owned */
-} weft_session_faults;
+    weft_session_problem *problem; /* [count] those of frames of the sensor, of shots in the order of the plan, then
+                                  unexpected files; owned */
+} weft_session_problems;
 
-/* Reads every photograph and frame that the journal names: a shot that was never taken is no fault, and counts in
- * session->record. A hidden file is foreign only where a capture leaves it that is killed. Parallel (OpenMP).
- * The caller frees with weft_session_faults_free. Errors: WEFT_SYSTEM for memory; a fault is none. */
-weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
-                             weft_error *error);
-void weft_session_faults_free(weft_session_faults *faults);
+/* Reads every photograph and frame that the journal names: a shot that was never taken is no problem, and counts in
+ * session->record. A hidden file is unexpected only where a capture leaves it that is killed. Parallel (OpenMP).
+ * The caller frees with weft_session_problems_free. Errors: WEFT_SYSTEM for memory; a problem is none. */
+weft_code weft_session_check(const weft_session *session, const weft_progress *progress,
+                             weft_session_problems *problems, weft_error *error);
+void weft_session_problems_free(weft_session_problems *problems);
 
-/* Adds a fault with a copy of `text`. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_fault_kind kind, int shot, const char *text,
-                                  weft_error *error);
+/* Adds a problem with a copy of `text`. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_session_problems_add(weft_session_problems *problems, weft_session_problem_kind kind, int shot,
+                                    const char *text, weft_error *error);
 
 /* Adds what lies in the folder of several cameras and is neither their list nor a session of theirs. Errors:
  * WEFT_SYSTEM. */
-weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_faults *faults,
+weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_problems *problems,
                                    weft_error *error);
+
+/* ---- What the check is made of ---- */
+
+/* Adds every shot whose photograph has the bytes of one that the journal names before it. Checksums alone would find
+ * two in a large session by chance. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_find_duplicates(const weft_session *session, weft_session_problems *problems, weft_error *error);
+
+/* Adds every file, and every folder of files, that belongs to no shot of the plan and is no part of a session; and what
+ * a killed capture leaves. Other hidden files are ignored. Errors: WEFT_SYSTEM. */
+weft_code weft_find_unexpected(const weft_session *session, weft_session_problems *problems, weft_error *error);
 
 #endif

@@ -16,7 +16,7 @@ weft_code weft_shooting_halt(weft_shooting *shooting, weft_code code)
     return code;
 }
 
-weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_stay, weft_shooting *shooting,
+weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_viewpoint, weft_shooting *shooting,
                               weft_error *error)
 {
     const weft_rig_settings *settings = &rig->settings;
@@ -24,9 +24,9 @@ weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int ne
                                 .session = session,
                                 .limits = {settings->shortest_exposure_s, settings->longest_exposure_s},
                                 .retries = (int)settings->retries,
-                                .stay = -1,
-                                .next_stay = next_stay};
-    return weft_shooting_halt(shooting, rig->stage.home(rig->stage.device, next_stay, error));
+                                .viewpoint = -1,
+                                .next_viewpoint = next_viewpoint};
+    return weft_shooting_halt(shooting, rig->stage.home(rig->stage.device, next_viewpoint, error));
 }
 
 void weft_shooting_end(weft_shooting *shooting)
@@ -42,7 +42,7 @@ weft_code weft_shooting_drive(weft_shooting *shooting, int number, weft_error *e
     WEFT_TRY(stage->move(stage->device, shot->view, shot->light_driven, &moved, error));
     if (!moved)
         return WEFT_OK;
-    shooting->stay = shooting->next_stay++;
+    shooting->viewpoint = shooting->next_viewpoint++;
     weft_meter_free(&shooting->meter);
     return weft_meter_make(shooting->session, shot->view, &shooting->meter, error);
 }

@@ -11,8 +11,8 @@ typedef struct weft_shooting {
     const weft_session *session;
     weft_exposure_limits limits;
     int retries;
-    int stay; /* of the last shot; -1 before the first */
-    int next_stay;
+    int viewpoint; /* of the last shot; -1 before the first */
+    int next_viewpoint;
     weft_meter meter;  /* of the view */
     double exposure_s; /* of the last shot, 0 before the first */
     weft_real light_cosine;
@@ -21,14 +21,15 @@ typedef struct weft_shooting {
     int exposures, timeouts, disturbed; /* counted; disturbed: the stage did not stand still */
 } weft_shooting;
 
-/* Homes the stage; `next_stay` numbers the first stay. Borrows rig and session. The caller ends with weft_shooting_end.
- * Errors: those of the rig; its axes stand still and its light is off then, here and below. */
-weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_stay, weft_shooting *shooting,
+/* Homes the stage; `next_viewpoint` numbers the first viewpoint. Borrows rig and session. The caller ends with
+ * weft_shooting_end. Errors: those of the rig; its axes stand still and its light is off then, here and below. */
+weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_viewpoint, weft_shooting *shooting,
                               weft_error *error);
 void weft_shooting_end(weft_shooting *shooting);
 
-/* Takes shot `shot` of the session into `samples`; *record receives stay and exposure. A photograph during which the
- * stage did not keep its pose is taken again. Errors: those of the rig, once an exposure or a pose has failed `retries`
+/* Takes shot `shot` of the session into `samples`; *record receives viewpoint and exposure. A photograph during which
+ * the stage did not keep its pose is taken again. Errors: those of the rig, once an exposure or a pose has failed
+ * `retries`
  * + 1 times; WEFT_BAD_INPUT where the view shows nothing of the sample. */
 weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
                              weft_error *error);

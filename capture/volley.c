@@ -116,7 +116,7 @@ weft_code weft_volley_take(weft_exposing *exposing, int count, weft_error *error
         return WEFT_OK;
     for (int i = 0; i < count; i++) {
         weft_exposing *e = &exposing[i];
-        e->record = (weft_shot_record){.stay = e->shooting->stay, .exposure_s = e->read_back_s};
+        e->record = (weft_shot_record){.viewpoint = e->shooting->viewpoint, .exposure_s = e->read_back_s};
     }
     return WEFT_OK;
 }

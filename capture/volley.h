@@ -9,7 +9,7 @@ typedef struct weft_exposing {
     weft_shooting *shooting;
     int shot;
     uint16_t *samples;
-    weft_shot_record record; /* stay, exposure, brackets */
+    weft_shot_record record; /* viewpoint, exposure, brackets */
     weft_code code;          /* of this camera alone; what follows is for volleys */
     weft_error error;        /* why */
     double exposure_s, read_back_s;

@@ -177,7 +177,7 @@ static void say_poses(const calibrate_command *command, const weft_axes_sighting
                      command->output, report->used, sightings->count, file->held_out_rms_px, file->rms_px);
     say_lines(common, "  ", &report->told);
     say_more_shots(common, report);
-    say_lines(common, "not determined: ", &report->not_told);
+    say_lines(common, "not determined: ", &report->undetermined);
     weft_command_say(common,
                      "not determined: the axes of the light are not seen by the camera; they stay as specified");
     say_night(common, n);
@@ -197,15 +197,15 @@ static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_
 {
     const weft_poses_file *file = &report->file;
     const weft_expectation *e = &n->expectation;
-    json_t *joints = json_array(), *not_told = json_array();
+    json_t *joints = json_array(), *undetermined = json_array();
     for (int k = 0; k < WEFT_JOINTS; k++)
         weft_json_append(&joints, pack_joint(file, k));
-    for (int i = 0; i < report->not_told.count; i++)
-        weft_json_append(&not_told, json_string(report->not_told.line[i]));
+    for (int i = 0; i < report->undetermined.count; i++)
+        weft_json_append(&undetermined, json_string(report->undetermined.line[i]));
     return json_pack("{ss si si sf sf sf sf sf so so si si so so so sf sb}", "event", "poses", "shots",
                      sightings->count, "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px",
                      file->rms_px, "point_px", file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad),
-                     "scatter_mm", file->scatter_mm, "joints", joints, "not_told", not_told, "poses", e->poses,
+                     "scatter_mm", file->scatter_mm, "joints", joints, "not_told", undetermined, "poses", e->poses,
                      "unreachable", n->unreachable, "expected_median_texels", weft_json_number(e->median_texels),
                      "expected_worst_texels", weft_json_number(e->worst.texels), "expected_direction_deg",
                      weft_json_number(weft_deg_of_rad(e->direction_rad)), "allowed_texels", n->allowed_texels,
@@ -224,8 +224,9 @@ static weft_code write_poses(const calibrate_command *command, const weft_axes_s
         const weft_axes_shot *s = &sightings->shot[i];
         shot[i] = (weft_poses_shot){s->name, s->left_out[0] ? s->left_out : NULL};
     }
-    weft_code code = weft_poses_write(command->output, &report->file, shot, sightings->count,
-                                      (const char *const *)report->not_told.line, report->not_told.count, error);
+    weft_code code =
+        weft_poses_write(command->output, &report->file, shot, sightings->count,
+                         (const char *const *)report->undetermined.line, report->undetermined.count, error);
     free(shot);
     return code;
 }

@@ -3,9 +3,9 @@
 #include "capture/laboratory/laboratory.h"
 #include "capture/preflight/preflight.h"
 #include "capture/virtual/ground_truth.h"
-#include "cli/capture_words.h"
+#include "cli/capture_report.h"
 #include "cli/command/arguments.h"
-#include "cli/command/person.h"
+#include "cli/command/operator.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -294,10 +294,10 @@ static weft_code capture_with_virtual_rig(capture_command *command, weft_error *
 
 static weft_code capture_with_laboratory(const capture_command *command, weft_error *error)
 {
-    weft_terminal_person person = weft_person_of(&command->common, &stop_asked);
+    weft_terminal_operator person = weft_operator_of(&command->common, &stop_asked);
     const weft_laboratory_request request = {.rig_file = command->rig_file,
                                              .sample = command->rig.sample,
-                                             .person = weft_person_at_terminal(&person),
+                                             .rig_operator = weft_operator_at_terminal(&person),
                                              .stop = &stop_asked};
     weft_laboratory *laboratory;
     if (command->truth.path)

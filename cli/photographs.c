@@ -52,12 +52,11 @@ static const weft_option option_table[] = {
     {0},
 };
 
-static void say_left_out(const photographs_command *command, const weft_hand *hand)
+static void say_left_out(const photographs_command *command, const weft_photograph_set *set)
 {
-    for (int i = 0; i < hand->count; i++) {
-        if (!weft_photographs_used(&hand->photograph[i]))
-            weft_command_say(&command->common, "left out '%s': %s", hand->photograph[i].name,
-                             hand->photograph[i].remark);
+    for (int i = 0; i < set->count; i++) {
+        if (!weft_photographs_used(&set->photograph[i]))
+            weft_command_say(&command->common, "left out '%s': %s", set->photograph[i].name, set->photograph[i].remark);
     }
 }
 
@@ -77,16 +76,16 @@ static void say_lens(const photographs_command *command, const weft_lens_estimat
                          c->k2, lens->rms_px);
 }
 
-static void say_outcome(const photographs_command *command, const weft_hand *hand)
+static void say_outcome(const photographs_command *command, const weft_photograph_set *set)
 {
-    say_left_out(command, hand);
-    for (int i = 0; i < hand->notes.count; i++)
-        weft_command_say(&command->common, "%s", hand->notes.line[i]);
-    say_lens(command, &hand->lens);
-    char words[WEFT_PHOTOGRAPHS_WORDS_SIZE];
-    weft_photographs_describe_tone(hand, words);
+    say_left_out(command, set);
+    for (int i = 0; i < set->notes.count; i++)
+        weft_command_say(&command->common, "%s", set->notes.line[i]);
+    say_lens(command, &set->lens);
+    char words[WEFT_PHOTOGRAPHS_TEXT_SIZE];
+    weft_photographs_describe_tone(set, words);
     weft_command_say(&command->common, "tone curve: %s", words);
-    weft_photographs_describe_masks(hand, &command->settings, words);
+    weft_photographs_describe_masks(set, &command->settings, words);
     weft_command_say(&command->common, "masks: %s", words);
     if (command->settings.colour)
         weft_command_say(&command->common,
@@ -94,7 +93,7 @@ static void say_outcome(const photographs_command *command, const weft_hand *han
                          "the mean",
                          command->settings.colour->left_out.mean);
     weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %.0f s", command->output,
-                     command->settings.width, command->settings.height, hand->used_count, hand->count, hand->seconds);
+                     command->settings.width, command->settings.height, set->used_count, set->count, set->seconds);
 }
 
 /* Hours of work must not end at a folder that cannot be written. */
@@ -112,7 +111,7 @@ static int run(int argc, char **argv)
     weft_progress progress = weft_command_progress(&command.common);
     command.settings.target = weft_target_printed(command.opening_mm);
     command.settings.target.paper_reflectance = command.settings.target.white_reflectance = command.paper_reflectance;
-    weft_hand hand;
+    weft_photograph_set set;
     weft_error error = {0};
     weft_lens lens;
     weft_colour colour;
@@ -131,12 +130,12 @@ static int run(int argc, char **argv)
     if (code == WEFT_OK && command.report_folder)
         code = check_report_folder(command.report_folder, &error);
     if (code == WEFT_OK)
-        code = weft_photographs_register(command.input, command.output, &command.settings, &progress, &hand, &error);
+        code = weft_photographs_register(command.input, command.output, &command.settings, &progress, &set, &error);
     if (code == WEFT_OK) {
-        say_outcome(&command, &hand);
+        say_outcome(&command, &set);
         if (command.report_folder)
-            code = weft_photographs_report(command.report_folder, command.output, &command.settings, &hand, &error);
-        weft_photographs_free(&hand);
+            code = weft_photographs_report(command.report_folder, command.output, &command.settings, &set, &error);
+        weft_photographs_free(&set);
     }
     weft_light_list_free(&lights);
     return weft_command_exit("photographs", &command.common, code, &error);

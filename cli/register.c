@@ -42,13 +42,13 @@ static const weft_option option_table[] = {
 
 static void say_faults(const register_command *command, const weft_session *session, const weft_registration *r)
 {
-    for (int stay = 0; stay < r->survey.stay_count; stay++) {
-        const weft_stay *one = &r->survey.stay[stay];
-        if (r->pose[stay].remark[0])
-            weft_command_say(&command->common, "view %s, stay %d: %s%s",
-                             weft_view_name_of(r->survey.view[one->view]).text, one->stay,
-                             r->pose[stay].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
-                             r->pose[stay].remark);
+    for (int viewpoint = 0; viewpoint < r->survey.viewpoint_count; viewpoint++) {
+        const weft_viewpoint *one = &r->survey.viewpoint[viewpoint];
+        if (r->pose[viewpoint].remark[0])
+            weft_command_say(&command->common, "view %s, viewpoint %d: %s%s",
+                             weft_view_name_of(r->survey.view[one->view]).text, one->viewpoint,
+                             r->pose[viewpoint].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
+                             r->pose[viewpoint].remark);
     }
     for (int shot = 0; shot < session->shot_count; shot++) {
         if (r->fault[shot].reason[0])
@@ -66,14 +66,14 @@ static weft_code say_outcome(const register_command *command, const weft_session
     weft_ring_summary all;
     WEFT_TRY(weft_ring_summarise(session, r, -1, &all, error));
     say_faults(command, session, r);
-    weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %d of %d stays registered",
+    weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %d of %d viewpoints registered",
                      command->output, r->settings.width, r->settings.height, r->image_count, session->shot_count,
-                     r->survey.stay_count - r->failed_stays, r->survey.stay_count);
+                     r->survey.viewpoint_count - r->failed_viewpoints, r->survey.viewpoint_count);
     weft_command_say(
         &command->common,
         "random error of a position, estimated: %.4f texels median, %.4f worst; %.3f %% of the samples saturated",
         all.median_uncertainty, all.worst_uncertainty, 100 * all.saturated);
-    if (r->found.bend.stays > 0)
+    if (r->found.bend.viewpoints > 0)
         weft_command_say(
             &command->common,
             "taken out: a bend of the plate of %.3f mm at its rim (random error %.4f), vignetting beside the "
@@ -93,11 +93,11 @@ static weft_code say_outcome(const register_command *command, const weft_session
                          sensor->flat_frames, 100 * sensor->least, 100 * sensor->most, 100 * sensor->fall_off,
                          sensor->dead);
     weft_lamp_drift drift = weft_lamp_drift_of(r);
-    if (drift.stays > 1)
+    if (drift.viewpoints > 1)
         weft_command_say(
             &command->common,
-            "the lamp: %+.2f to %+.2f %% over %d stays, by the white patches, taken out of each photograph",
-            100 * drift.lowest, 100 * drift.highest, drift.stays);
+            "the lamp: %+.2f to %+.2f %% over %d viewpoints, by the white patches, taken out of each photograph",
+            100 * drift.lowest, 100 * drift.highest, drift.viewpoints);
     if (session->colour.terms > 0)
         weft_command_say(&command->common,
                          "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "

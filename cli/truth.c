@@ -27,7 +27,7 @@ static weft_code read_cloth(const weft_option *option, const char *text, void *v
     command->cloth[command->cloth_count++] = text;
     weft_file_kind kind;
     WEFT_TRY(weft_file_kind_of(text, &kind, error));
-    return weft_argument_belongs(option->argument, text, error);
+    return weft_argument_check_type(option->argument, text, error);
 }
 
 static const weft_option option_table[] = {

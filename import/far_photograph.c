@@ -55,19 +55,19 @@ static int in_order(const void *a, const void *b)
     return order ? order : strcmp(p->name, q->name);
 }
 
-/* Takes `doubled` out of the collection, or fails: it has the light and view of `kept`. A copy says nothing new. */
+/* Takes `duplicate` out of the collection, or fails: it has the light and view of `kept`. A copy says nothing new. */
 static weft_code leave_out(weft_collection *collection, const char *folder, const weft_photograph *kept,
-                           weft_photograph *doubled, weft_error *error)
+                           weft_photograph *duplicate, weft_error *error)
 {
-    bool is_copy = weft_folder_holds_copies(folder, kept->name, doubled->name);
+    bool is_copy = weft_folder_holds_copies(folder, kept->name, duplicate->name);
     if (!collection->leaves_out_doubles && !is_copy)
         return weft_fail(error, WEFT_BAD_INPUT,
                          "'%s': '%s' and '%s' have the same light and view (--skip-bad keeps one)", folder, kept->name,
-                         doubled->name);
-    WEFT_TRY(weft_lines_add(&collection->notes, error, "left out '%s': it %s '%s'", doubled->name,
+                         duplicate->name);
+    WEFT_TRY(weft_lines_add(&collection->notes, error, "left out '%s': it %s '%s'", duplicate->name,
                             is_copy ? "is a copy of" : "has the light and view of", kept->name));
-    free(doubled->name);
-    doubled->name = NULL;
+    free(duplicate->name);
+    duplicate->name = NULL;
     return WEFT_OK;
 }
 

@@ -73,7 +73,7 @@ static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_e
     report->outside_fraction = (double)run->outside / (double)run->samples;
     report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated)));
     WEFT_TRY(note_scale(report, error));
-    WEFT_TRY(weft_colour_remarks_note(&run->remarks, run->collection, run->options->colours, &report->notes, error));
+    WEFT_TRY(weft_colour_messages_note(&run->messages, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, bonn, run->options, &run->decoding, report);
     if (!provenance)
         return weft_fail_memory(error, "provenance", 0);

@@ -41,7 +41,7 @@ typedef struct weft_import_options {
     bool linear;  /* integer images hold linear values, whatever their colours */
     const char
         *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
-    /* Mask photographs that cannot be used, and leave out doubled ones, instead of failing. */
+    /* Mask photographs that cannot be used, and leave out duplicates, instead of failing. */
     bool skip_bad;
 } weft_import_options;
 

@@ -22,7 +22,7 @@ static void count_image(weft_import_run *run, int index, weft_code code, const w
         run->code = code;
         run->error = *error;
     } else {
-        weft_colour_remarks_add(&run->remarks, index, photograph->name, decoded);
+        weft_colour_messages_add(&run->messages, index, photograph->name, decoded);
         run->saturated += decoded->saturated;
         run->outside += decoded->outside;
         run->sum += decoded->sum;

@@ -3,7 +3,7 @@
 #define WEFT_IMPORT_RUN_H
 
 #include "import/bonn/file.h"
-#include "import/colour_remarks.h"
+#include "import/colour_messages.h"
 #include "import/decode.h"
 #include "import/import.h"
 
@@ -20,7 +20,7 @@ typedef struct weft_import_run {
     long done;
     size_t saturated, outside, samples;
     double sum;
-    weft_colour_remarks remarks;
+    weft_colour_messages messages;
 } weft_import_run;
 
 /* Whether a worker has failed. Thread-safe. */

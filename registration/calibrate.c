@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { most_stays = 16, most_photographs = 8, most_rounds = 6 };
+enum { most_viewpoints = 16, most_photographs = 8, most_rounds = 6 };
 
 static const size_t average_bytes = (size_t)256 << 20;
 
@@ -18,10 +18,10 @@ static const double prior_mm = 1;
 /* A round that moves the rim by less is the last. */
 static const double settled_mm = 0.01;
 
-/* One of the stays it is found from. */
+/* One of the viewpoints it is found from. */
 typedef struct witness {
-    int stay;       /* index into the survey */
-    weft_stay some; /* of its photographs */
+    int viewpoint;       /* index into the survey */
+    weft_viewpoint some; /* of its photographs */
     int shot[most_photographs];
     float *average; /* NULL: it says nothing */
     bool located;
@@ -30,11 +30,11 @@ typedef struct witness {
 
 typedef struct court {
     const weft_session *session;
-    const weft_sensor_faults *faults;
+    const weft_sensor_defects *faults;
     weft_registration *registration;
     weft_sight *sight;
     int count;
-    witness witness[most_stays];
+    witness witness[most_viewpoints];
 } court;
 
 /* Stays evenly spread over the survey, and of each some photographs evenly spread over its lights. */
@@ -42,16 +42,16 @@ static void call_witnesses(court *c)
 {
     const weft_survey *survey = &c->registration->survey;
     size_t bytes = weft_photograph_sample_count(c->session) / 3 * sizeof(float);
-    int room = (int)fmin(most_stays, fmax(1, (double)(average_bytes / bytes)));
-    c->count = survey->stay_count < room ? survey->stay_count : room;
+    int room = (int)fmin(most_viewpoints, fmax(1, (double)(average_bytes / bytes)));
+    c->count = survey->viewpoint_count < room ? survey->viewpoint_count : room;
     for (int i = 0; i < c->count; i++) {
         witness *w = &c->witness[i];
-        w->stay = (int)((long)i * survey->stay_count / c->count);
-        const weft_stay *all = &survey->stay[w->stay];
+        w->viewpoint = (int)((long)i * survey->viewpoint_count / c->count);
+        const weft_viewpoint *all = &survey->viewpoint[w->viewpoint];
         int count = all->count < most_photographs ? all->count : most_photographs;
         for (int k = 0; k < count; k++)
             w->shot[k] = all->shot[(long)k * all->count / count];
-        w->some = (weft_stay){all->view, all->stay, count, w->shot};
+        w->some = (weft_viewpoint){all->view, all->viewpoint, count, w->shot};
     }
 }
 
@@ -100,7 +100,7 @@ static weft_code locate_all(court *c, weft_error *error)
     return WEFT_OK;
 }
 
-/* Sums what the stays say of the bend, each refined under the present one. */
+/* Sums what the viewpoints say of the bend, each refined under the present one. */
 static weft_code hear(court *c, weft_bend_evidence *sum, int *heard, weft_error *error)
 {
     *sum = (weft_bend_evidence){0};
@@ -158,8 +158,8 @@ static weft_code find_bend(court *c, weft_error *error)
     double change = INFINITY;
     for (int round = 0; round < most_rounds && change > settled_mm; round++) {
         weft_bend_evidence evidence;
-        WEFT_TRY(hear(c, &evidence, &found->stays, error));
-        if (found->stays == 0)
+        WEFT_TRY(hear(c, &evidence, &found->viewpoints, error));
+        if (found->viewpoints == 0)
             return WEFT_OK;
         change = judge(c, &evidence);
     }
@@ -209,7 +209,7 @@ static weft_code find_vignetting(court *c, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weft_calibrate(const weft_sensor_faults *faults, weft_registration *registration, weft_sight *sight,
+weft_code weft_calibrate(const weft_sensor_defects *faults, weft_registration *registration, weft_sight *sight,
                          weft_error *error)
 {
     court *c = calloc(1, sizeof *c);

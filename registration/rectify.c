@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One stay at work. */
+/* One viewpoint at work. */
 typedef struct job {
     const weft_rectifier *rectifier;
     const weft_viewpoint_photographs *photographs;
@@ -108,7 +108,7 @@ static weft_code provide_for_brackets(const weft_session *session, bench *b, wef
     return b->bracket && b->value && b->variance ? WEFT_OK : weft_fail_memory(error, "brackets", samples * 16);
 }
 
-static weft_code read_brackets(const weft_sensor_faults *faults, int shot, const bench *b, weft_bracket_frame *frame,
+static weft_code read_brackets(const weft_sensor_defects *faults, int shot, const bench *b, weft_bracket_frame *frame,
                                weft_error *error)
 {
     const weft_session *session = &faults->seen;
@@ -214,9 +214,9 @@ static double point_spread_reach(const weft_sight *sight, const weft_view_pose *
 }
 
 /* Its texels beside the frame are filled, so that each has a sample in one view at least: there it needs least. */
-static bool is_most_frontal(const weft_survey *survey, int stay)
+static bool is_most_frontal(const weft_survey *survey, int viewpoint)
 {
-    double theta_rad = fabs(survey->view[survey->stay[stay].view].theta_rad);
+    double theta_rad = fabs(survey->view[survey->viewpoint[viewpoint].view].theta_rad);
     for (int view = 0; view < survey->view_count; view++) {
         if (fabs(survey->view[view].theta_rad) < theta_rad)
             return false;
@@ -224,11 +224,12 @@ static bool is_most_frontal(const weft_survey *survey, int stay)
     return true;
 }
 
-weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_viewpoint_photographs *photographs,
-                            const weft_white *estimated, float *shown, weft_error *error)
+weft_code weft_rectify_viewpoint(const weft_rectifier *rectifier, int viewpoint,
+                                 const weft_viewpoint_photographs *photographs, const weft_white *estimated,
+                                 float *shown, weft_error *error)
 {
     weft_registration *registration = rectifier->registration;
-    const weft_view_pose *pose = &registration->pose[stay];
+    const weft_view_pose *pose = &registration->pose[viewpoint];
     const weft_target *target = &rectifier->session->target;
     job j = {
         .rectifier = rectifier, .photographs = photographs, .estimated = estimated, .shown = shown, .shown_shot = -1};
@@ -238,13 +239,13 @@ weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const wef
                                   rectifier->sight->bend,
                                   target->opening_mm,
                                   point_spread_reach(rectifier->sight, pose),
-                                  is_most_frontal(&registration->survey, stay)};
+                                  is_most_frontal(&registration->survey, viewpoint)};
     WEFT_TRY(weft_resampler_create(&resampling, registration->settings.width, registration->settings.height,
                                    &j.resampler, error));
     weft_code code = weft_reference_pixels_find(rectifier->sight, target, &pose->homography, pose->point_spread,
                                                 &j.reference, error);
     if (code == WEFT_OK)
-        code = rectify_all(&j, &registration->used[stay], error);
+        code = rectify_all(&j, &registration->used[viewpoint], error);
     weft_reference_pixels_free(&j.reference);
     weft_resampler_free(&j.resampler);
     return code;

@@ -15,7 +15,7 @@ static const size_t kept_bytes = (size_t)512 << 20;
 
 /* Everything at work. */
 typedef struct work {
-    const weft_sensor_faults *faults;
+    const weft_sensor_defects *faults;
     weft_rectifier rectifier;
     weft_sight sight;
     const weft_progress *progress;
@@ -31,9 +31,9 @@ weft_registration_settings weft_registration_defaults(const weft_session *sessio
 
 static weft_code allocate(const weft_session *session, weft_registration *registration, weft_error *error)
 {
-    size_t shots = (size_t)session->shot_count, stays = (size_t)registration->survey.stay_count;
-    registration->pose = calloc(stays, sizeof *registration->pose);
-    registration->used = calloc(stays, sizeof *registration->used);
+    size_t shots = (size_t)session->shot_count, viewpoints = (size_t)registration->survey.viewpoint_count;
+    registration->pose = calloc(viewpoints, sizeof *registration->pose);
+    registration->used = calloc(viewpoints, sizeof *registration->used);
     registration->fault = calloc(shots, sizeof *registration->fault);
     registration->white = calloc(shots, sizeof *registration->white);
     registration->saturated = calloc(shots, sizeof *registration->saturated);
@@ -122,13 +122,14 @@ static weft_code describe_dataset(const weft_session *sessions, int count, const
     return WEFT_OK;
 }
 
-static weft_code find_and_rectify(work *w, int stay, const weft_viewpoint_photographs *photographs, weft_error *error)
+static weft_code find_and_rectify(work *w, int viewpoint, const weft_viewpoint_photographs *photographs,
+                                  weft_error *error)
 {
     const weft_session *session = w->rectifier.session;
     weft_registration *registration = w->rectifier.registration;
-    weft_view_pose *pose = &registration->pose[stay];
+    weft_view_pose *pose = &registration->pose[viewpoint];
     weft_pose promised_pose =
-        weft_session_pose(session, registration->survey.view[registration->survey.stay[stay].view]);
+        weft_session_pose(session, registration->survey.view[registration->survey.viewpoint[viewpoint].view]);
     weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
     WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
                             &registration->settings.limits, pose, w->fitted, error));
@@ -136,57 +137,58 @@ static weft_code find_and_rectify(work *w, int stay, const weft_viewpoint_photog
         return WEFT_OK;
     if (pose->source == WEFT_POSE_DRAWING)
         w->point_spread = pose->point_spread;
-    return weft_rectify_stay(&w->rectifier, stay, photographs, NULL, w->shown, error);
+    return weft_rectify_viewpoint(&w->rectifier, viewpoint, photographs, NULL, w->shown, error);
 }
 
-static weft_code register_stay(work *w, int stay, weft_error *error)
+static weft_code register_viewpoint(work *w, int viewpoint, weft_error *error)
 {
     weft_registration *registration = w->rectifier.registration;
-    weft_view_pose *pose = &registration->pose[stay];
+    weft_view_pose *pose = &registration->pose[viewpoint];
     weft_viewpoint_photographs photographs;
-    WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
-                                             registration->fault, &photographs, error));
+    WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.viewpoint[viewpoint],
+                                             kept_bytes, registration->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
-        code = find_and_rectify(w, stay, &photographs, error);
+        code = find_and_rectify(w, viewpoint, &photographs, error);
     else
         snprintf(pose->remark, sizeof pose->remark, "none of its %d photographs can be used", photographs.count);
     if (code == WEFT_OK && registration->settings.report_folder) {
         weft_report_pictures pictures = {photographs.average, pose->source == WEFT_POSE_DRAWING ? w->fitted : NULL,
-                                         registration->used[stay] > 0 ? w->shown : NULL};
-        code = weft_report_write_pictures(registration, &w->sight, stay, &pictures, error);
+                                         registration->used[viewpoint] > 0 ? w->shown : NULL};
+        code = weft_report_write_pictures(registration, &w->sight, viewpoint, &pictures, error);
     }
     w->done += photographs.count;
     weft_viewpoint_photographs_free(&photographs);
     return code;
 }
 
-/* Rectifies the photographs of a stay that had no white level of their own. */
-static weft_code rectify_again(work *w, int stay, const weft_white *estimated, weft_error *error)
+/* Rectifies the photographs of a viewpoint that had no white level of their own. */
+static weft_code rectify_again(work *w, int viewpoint, const weft_white *estimated, weft_error *error)
 {
     weft_registration *registration = w->rectifier.registration;
-    bool unseen = w->shown && registration->used[stay] == 0;
+    bool unseen = w->shown && registration->used[viewpoint] == 0;
     weft_viewpoint_photographs photographs;
-    WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
-                                             registration->fault, &photographs, error));
-    weft_code code = weft_rectify_stay(&w->rectifier, stay, &photographs, estimated, unseen ? w->shown : NULL, error);
+    WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.viewpoint[viewpoint],
+                                             kept_bytes, registration->fault, &photographs, error));
+    weft_code code =
+        weft_rectify_viewpoint(&w->rectifier, viewpoint, &photographs, estimated, unseen ? w->shown : NULL, error);
     weft_viewpoint_photographs_free(&photographs);
-    if (code != WEFT_OK || !unseen || registration->used[stay] == 0)
+    if (code != WEFT_OK || !unseen || registration->used[viewpoint] == 0)
         return code;
     weft_report_pictures pictures = {NULL, NULL, w->shown};
-    return weft_report_write_pictures(registration, &w->sight, stay, &pictures, error);
+    return weft_report_write_pictures(registration, &w->sight, viewpoint, &pictures, error);
 }
 
-/* Once more through the stays with photographs whose white level was not measured. */
+/* Once more through the viewpoints with photographs whose white level was not measured. */
 static weft_code rectify_estimated(work *w, weft_error *error)
 {
     weft_registration *registration = w->rectifier.registration;
     weft_white *estimated;
     WEFT_TRY(weft_white_estimate(w->rectifier.session, registration, &estimated, error));
     weft_code code = WEFT_OK;
-    for (int stay = 0; code == WEFT_OK && stay < registration->survey.stay_count; stay++) {
-        if (weft_white_lacking(registration, stay))
-            code = rectify_again(w, stay, estimated, error);
+    for (int viewpoint = 0; code == WEFT_OK && viewpoint < registration->survey.viewpoint_count; viewpoint++) {
+        if (weft_white_lacking(registration, viewpoint))
+            code = rectify_again(w, viewpoint, estimated, error);
     }
     free(estimated);
     return code;
@@ -194,9 +196,9 @@ static weft_code rectify_estimated(work *w, weft_error *error)
 
 static void count_outcome(const weft_session *session, weft_registration *registration)
 {
-    for (int stay = 0; stay < registration->survey.stay_count; stay++) {
-        registration->image_count += registration->used[stay];
-        registration->failed_stays += registration->pose[stay].source == WEFT_POSE_FAILED;
+    for (int viewpoint = 0; viewpoint < registration->survey.viewpoint_count; viewpoint++) {
+        registration->image_count += registration->used[viewpoint];
+        registration->failed_viewpoints += registration->pose[viewpoint].source == WEFT_POSE_FAILED;
     }
     for (int shot = 0; shot < session->shot_count; shot++) {
         const weft_white *white = &registration->white[shot];
@@ -215,7 +217,7 @@ static weft_code check_outcome(const weft_session *session, const weft_registrat
     return weft_fail(error, WEFT_BAD_INPUT,
                      "nothing in '%s' can be registered (%d photographs cannot be used, %d views "
                      "failed): %s",
-                     session->folder, registration->fault_count, registration->failed_stays, reason);
+                     session->folder, registration->fault_count, registration->failed_viewpoints, reason);
 }
 
 static weft_code run(work *w, weft_error *error)
@@ -226,9 +228,9 @@ static weft_code run(work *w, weft_error *error)
     weft_progress_report(w->progress, "calibrating", 0, total);
     weft_sensor_blind(w->faults, &w->sight);
     WEFT_TRY(weft_calibrate(w->faults, registration, &w->sight, error));
-    for (int stay = 0; stay < registration->survey.stay_count; stay++) {
+    for (int viewpoint = 0; viewpoint < registration->survey.viewpoint_count; viewpoint++) {
         weft_progress_report(w->progress, "registering views", w->done, total);
-        WEFT_TRY(register_stay(w, stay, error));
+        WEFT_TRY(register_viewpoint(w, viewpoint, error));
     }
     weft_progress_report(w->progress, "registering views", total, total);
     WEFT_TRY(rectify_estimated(w, error));
@@ -273,9 +275,9 @@ static weft_code register_camera(const weft_session *session, const char *output
                                  int first_image, const weft_progress *progress, weft_registration *registration,
                                  weft_error *error)
 {
-    weft_sensor_faults faults;
+    weft_sensor_defects faults;
     double began_s = weft_now_s();
-    weft_code code = weft_sensor_faults_find(session, &faults, error);
+    weft_code code = weft_sensor_defects_find(session, &faults, error);
     registration->found.sensor = faults.summary;
     if (code == WEFT_OK) {
         work w = {.faults = &faults, .progress = progress};
@@ -285,7 +287,7 @@ static weft_code register_camera(const weft_session *session, const char *output
     registration->seconds = weft_now_s() - began_s;
     if (code == WEFT_OK && registration->settings.report_folder)
         code = weft_report_write_page(&faults.seen, registration, output, error);
-    weft_sensor_faults_free(&faults);
+    weft_sensor_defects_free(&faults);
     return code;
 }
 

@@ -51,7 +51,7 @@ static void add_photograph(const weft_session *session, const uint16_t *samples,
     }
 }
 
-static weft_code read_one(const weft_sensor_faults *faults, int shot, uint16_t *samples, int64_t *brightness,
+static weft_code read_one(const weft_sensor_defects *faults, int shot, uint16_t *samples, int64_t *brightness,
                           weft_fault *fault)
 {
     const weft_session *session = &faults->seen;
@@ -117,28 +117,28 @@ static weft_code read_all(weft_viewpoint_photographs *photographs, bool keep, su
         }
         free(scratch);
     }
-    return short_of_memory ? weft_fail_memory(error, "the photographs of a stay", bytes) : WEFT_OK;
+    return short_of_memory ? weft_fail_memory(error, "the photographs of a viewpoint", bytes) : WEFT_OK;
 }
 
-weft_code weft_viewpoint_photographs_read(const weft_sensor_faults *faults, const weft_sight *sight,
-                                          const weft_stay *stay, size_t memory_bytes, weft_fault *fault,
+weft_code weft_viewpoint_photographs_read(const weft_sensor_defects *faults, const weft_sight *sight,
+                                          const weft_viewpoint *viewpoint, size_t memory_bytes, weft_fault *fault,
                                           weft_viewpoint_photographs *photographs, weft_error *error)
 {
     const weft_session *session = &faults->seen;
-    size_t count = (size_t)stay->count, values = weft_photograph_sample_count(session), pixels = values / 3;
-    *photographs = (weft_viewpoint_photographs){.faults = faults, .count = stay->count, .shot = stay->shot};
+    size_t count = (size_t)viewpoint->count, values = weft_photograph_sample_count(session), pixels = values / 3;
+    *photographs = (weft_viewpoint_photographs){.faults = faults, .count = viewpoint->count, .shot = viewpoint->shot};
     photographs->samples = calloc(count, sizeof *photographs->samples);
     photographs->usable = calloc(count, 1);
     photographs->average = malloc(pixels * sizeof(float));
     sums sum = {calloc(pixels, sizeof *sum.light), calloc(pixels, sizeof *sum.brightness)};
     weft_code code = WEFT_OK;
     if (!photographs->samples || !photographs->usable || !photographs->average || !sum.light || !sum.brightness)
-        code = weft_fail_memory(error, "the average of a stay", pixels * 20);
+        code = weft_fail_memory(error, "the average of a viewpoint", pixels * 20);
     if (code == WEFT_OK)
         code = read_all(photographs, count * values * sizeof(uint16_t) <= memory_bytes, &sum, fault, error);
     if (code == WEFT_OK) {
         finish_average(sight, &sum, photographs->average);
-        for (int i = 0; i < stay->count; i++)
+        for (int i = 0; i < viewpoint->count; i++)
             photographs->usable_count += photographs->usable[i];
     }
     free(sum.light);

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-bool weft_white_lacking(const weft_registration *registration, int stay)
+bool weft_white_lacking(const weft_registration *registration, int viewpoint)
 {
-    const weft_stay *one = &registration->survey.stay[stay];
-    if (registration->pose[stay].source == WEFT_POSE_FAILED)
+    const weft_viewpoint *one = &registration->survey.viewpoint[viewpoint];
+    if (registration->pose[viewpoint].source == WEFT_POSE_FAILED)
         return false;
     for (int i = 0; i < one->count; i++) {
         if (!registration->fault[one->shot[i]].reason[0] && registration->white[one->shot[i]].patches == 0)
@@ -54,8 +54,8 @@ weft_code weft_white_estimate(const weft_session *session, const weft_registrati
 {
     size_t shots = (size_t)session->shot_count;
     bool lacking = false;
-    for (int stay = 0; stay < registration->survey.stay_count && !lacking; stay++)
-        lacking = weft_white_lacking(registration, stay);
+    for (int viewpoint = 0; viewpoint < registration->survey.viewpoint_count && !lacking; viewpoint++)
+        lacking = weft_white_lacking(registration, viewpoint);
     *estimated = calloc(shots, sizeof **estimated);
     double *scratch = malloc(shots * sizeof *scratch);
     weft_code code = *estimated && scratch ? WEFT_OK : weft_fail_memory(error, "white levels", shots * 48);

@@ -4,8 +4,8 @@
 
 #include "registration/outcome/outcome.h"
 
-/* Whether a registered stay holds a usable photograph without a white level. Pure. */
-bool weft_white_lacking(const weft_registration *registration, int stay);
+/* Whether a registered viewpoint holds a usable photograph without a white level. Pure. */
+bool weft_white_lacking(const weft_registration *registration, int viewpoint);
 
 /* For every photograph of the session (*estimated, [shot_count], owned by the caller, free) the median of the levels
  * measured under the same light where there are three or more, else of all levels measured. Nothing is computed where

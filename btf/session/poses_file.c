@@ -141,7 +141,7 @@ static weft_code check_numbers(const char *path, const weft_poses_file *file, we
 }
 
 weft_code weft_poses_write(const char *path, const weft_poses_file *file, const weft_poses_shot *shot, int shot_count,
-                           const char *const *not_told, int not_told_count, weft_error *error)
+                           const char *const *undetermined, int undetermined_count, weft_error *error)
 {
     WEFT_TRY(check_numbers(path, file, error));
     json_t *scatter =
@@ -151,7 +151,7 @@ weft_code weft_poses_write(const char *path, const weft_poses_file *file, const 
                              "home", pack_home(file), "joints", pack_joints(file), "scatter", scatter, "point_px",
                              file->point_px, "rms_px", file->rms_px, "held_out_rms_px", file->held_out_rms_px, "used",
                              pack_shots(shot, shot_count, false), "left_out", pack_shots(shot, shot_count, true),
-                             "not_told", pack_texts(not_told, not_told_count));
+                             "not_told", pack_texts(undetermined, undetermined_count));
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(root);
     if (!text)

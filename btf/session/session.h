@@ -33,8 +33,8 @@ typedef struct weft_bracket_record {
 /* What the journal says of a shot. */
 typedef struct weft_shot_record {
     bool taken;
-    int stay; /* counts the moves of the camera axes, below WEFT_SESSION_MAX_SHOTS: photographs of one stay share one
-                 pose */
+    int viewpoint; /* counts the moves of the camera axes, below WEFT_SESSION_MAX_SHOTS: photographs of one viewpoint
+                 share one pose */
     double exposure_s;
     uint64_t bytes; /* size of the file */
     uint32_t crc32; /* of its bytes */

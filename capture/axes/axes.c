@@ -160,7 +160,7 @@ weft_angles weft_axes_light_on_sample(const weft_axes *axes, const weft_axis_pos
     return (weft_angles){lamp.theta_rad, weft_rad_of_deg(phi_deg - 360 * floor(phi_deg / 360))};
 }
 
-bool weft_axes_same_stay(const weft_axes *axes, const weft_axis_positions *a, const weft_axis_positions *b)
+bool weft_axes_same_viewpoint(const weft_axes *axes, const weft_axis_positions *a, const weft_axis_positions *b)
 {
     for (int k = 0; k < axes->count; k++) {
         if (axes->axis[k].moves != WEFT_BODY_LIGHT && fabs(a->deg[k] - b->deg[k]) > same_deg)

@@ -77,6 +77,6 @@ double weft_axis_leg_s(const weft_axis *axis, double distance_deg);
 double weft_axes_move_s(const weft_axes *axes, const weft_axis_positions *from, const weft_axis_positions *to);
 
 /* Whether camera or sample stand elsewhere, so that the photograph has another pose. */
-bool weft_axes_same_stay(const weft_axes *axes, const weft_axis_positions *a, const weft_axis_positions *b);
+bool weft_axes_same_viewpoint(const weft_axes *axes, const weft_axis_positions *a, const weft_axis_positions *b);
 
 #endif

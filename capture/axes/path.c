@@ -10,19 +10,19 @@ static const double same_deg = 1e-9;
 
 /* ---- Stays ----
  *
- * A stay is what is visited once: poses whose slow axes, as a mask, stand alike. */
+ * A viewpoint is what is visited once: poses whose slow axes, as a mask, stand alike. */
 
-typedef struct stay {
+typedef struct viewpoint {
     int first, count; /* in the sorted numbers */
-} stay;
+} viewpoint;
 
 typedef struct plan {
     const weft_axes *axes;
     bool slow[WEFT_AXES_MAX];
     const weft_axis_positions *pose;
-    int count, *number; /* sorted by stay */
-    int stay_count, *stay_order;
-    stay *stay;
+    int count, *number; /* sorted by viewpoint */
+    int viewpoint_count, *viewpoint_order;
+    viewpoint *viewpoint;
     const weft_axis_positions *from; /* where the tour at hand begins; NULL: anywhere */
     const int *local;                /* its numbers */
 } plan;
@@ -40,7 +40,7 @@ static void choose_slow_axes(plan *p)
 /* qsort has no context. */
 static _Thread_local const plan *sorting;
 
-static int compare_stays(const void *a, const void *b)
+static int compare_viewpoints(const void *a, const void *b)
 {
     const int *p = a, *q = b;
     for (int k = 0; k < sorting->axes->count; k++) {
@@ -51,7 +51,7 @@ static int compare_stays(const void *a, const void *b)
     return *p - *q;
 }
 
-static bool same_stay(const plan *p, int a, int b)
+static bool same_viewpoint(const plan *p, int a, int b)
 {
     for (int k = 0; k < p->axes->count; k++) {
         if (p->slow[k] && fabs(p->pose[a].deg[k] - p->pose[b].deg[k]) > same_deg)
@@ -60,21 +60,21 @@ static bool same_stay(const plan *p, int a, int b)
     return true;
 }
 
-static weft_code find_stays(plan *p, weft_error *error)
+static weft_code find_viewpoints(plan *p, weft_error *error)
 {
     sorting = p;
-    qsort(p->number, (size_t)p->count, sizeof *p->number, compare_stays);
-    p->stay = malloc((size_t)p->count * sizeof *p->stay);
-    p->stay_order = malloc((size_t)p->count * sizeof *p->stay_order);
-    if (!p->stay || !p->stay_order)
-        return weft_fail_memory(error, "order of the poses", (size_t)p->count * sizeof *p->stay);
+    qsort(p->number, (size_t)p->count, sizeof *p->number, compare_viewpoints);
+    p->viewpoint = malloc((size_t)p->count * sizeof *p->viewpoint);
+    p->viewpoint_order = malloc((size_t)p->count * sizeof *p->viewpoint_order);
+    if (!p->viewpoint || !p->viewpoint_order)
+        return weft_fail_memory(error, "order of the poses", (size_t)p->count * sizeof *p->viewpoint);
     for (int i = 0; i < p->count; i++) {
-        if (i > 0 && same_stay(p, p->number[i - 1], p->number[i])) {
-            p->stay[p->stay_count - 1].count++;
+        if (i > 0 && same_viewpoint(p, p->number[i - 1], p->number[i])) {
+            p->viewpoint[p->viewpoint_count - 1].count++;
             continue;
         }
-        p->stay_order[p->stay_count] = p->stay_count;
-        p->stay[p->stay_count++] = (stay){i, 1};
+        p->viewpoint_order[p->viewpoint_count] = p->viewpoint_count;
+        p->viewpoint[p->viewpoint_count++] = (viewpoint){i, 1};
     }
     return WEFT_OK;
 }
@@ -82,12 +82,13 @@ static weft_code find_stays(plan *p, weft_error *error)
 /* ---- Tours ---- */
 
 /* The other axes travel meanwhile, and less far: they are left out. */
-static double between_stays(const void *context, int from, int to)
+static double between_viewpoints(const void *context, int from, int to)
 {
     const plan *p = context;
     if (from < 0)
         return 0;
-    weft_axis_positions a = p->pose[p->number[p->stay[from].first]], b = p->pose[p->number[p->stay[to].first]];
+    weft_axis_positions a = p->pose[p->number[p->viewpoint[from].first]],
+                        b = p->pose[p->number[p->viewpoint[to].first]];
     for (int k = 0; k < p->axes->count; k++) {
         if (!p->slow[k])
             a.deg[k] = b.deg[k] = 0;
@@ -95,15 +96,15 @@ static double between_stays(const void *context, int from, int to)
     return weft_axes_move_s(p->axes, &a, &b);
 }
 
-static double within_stay(const void *context, int from, int to)
+static double within_viewpoint(const void *context, int from, int to)
 {
     const plan *p = context;
     const weft_axis_positions *a = from < 0 ? p->from : &p->pose[p->local[from]];
     return a ? weft_axes_move_s(p->axes, a, &p->pose[p->local[to]]) : 0;
 }
 
-/* Appends the poses of a stay to `ordered`. */
-static weft_code tour_stay(plan *p, const stay *s, int *ordered, int done, weft_error *error)
+/* Appends the poses of a viewpoint to `ordered`. */
+static weft_code tour_viewpoint(plan *p, const viewpoint *s, int *ordered, int done, weft_error *error)
 {
     int *tour = malloc((size_t)s->count * sizeof *tour);
     if (!tour)
@@ -112,7 +113,7 @@ static weft_code tour_stay(plan *p, const stay *s, int *ordered, int done, weft_
     p->local = p->number + s->first;
     for (int i = 0; i < s->count; i++)
         tour[i] = i;
-    weft_code code = weft_tour(s->count, within_stay, p, tour, error);
+    weft_code code = weft_tour(s->count, within_viewpoint, p, tour, error);
     for (int i = 0; i < s->count; i++)
         ordered[done + i] = p->local[tour[i]];
     free(tour);
@@ -121,10 +122,10 @@ static weft_code tour_stay(plan *p, const stay *s, int *ordered, int done, weft_
 
 static weft_code tour_all(plan *p, int *ordered, weft_error *error)
 {
-    WEFT_TRY(weft_tour(p->stay_count, between_stays, p, p->stay_order, error));
-    for (int i = 0, done = 0; i < p->stay_count; i++) {
-        const stay *s = &p->stay[p->stay_order[i]];
-        WEFT_TRY(tour_stay(p, s, ordered, done, error));
+    WEFT_TRY(weft_tour(p->viewpoint_count, between_viewpoints, p, p->viewpoint_order, error));
+    for (int i = 0, done = 0; i < p->viewpoint_count; i++) {
+        const viewpoint *s = &p->viewpoint[p->viewpoint_order[i]];
+        WEFT_TRY(tour_viewpoint(p, s, ordered, done, error));
         done += s->count;
     }
     return WEFT_OK;
@@ -146,7 +147,7 @@ static weft_code order(plan *p, weft_axes_path *path, weft_error *error)
     int *ordered = calloc((size_t)p->count, sizeof *ordered);
     if (!ordered)
         return weft_fail_memory(error, "order of the poses", (size_t)p->count * sizeof *ordered);
-    weft_code code = find_stays(p, error);
+    weft_code code = find_viewpoints(p, error);
     if (code == WEFT_OK)
         code = tour_all(p, ordered, error);
     for (int i = 0; code == WEFT_OK && i < p->count; i++)
@@ -166,7 +167,7 @@ weft_code weft_axes_order(const weft_axes *axes, const weft_axis_positions *pose
     *path = (weft_axes_path){0};
     choose_slow_axes(&p);
     weft_code code = count > 1 ? order(&p, path, error) : WEFT_OK;
-    free(p.stay);
-    free(p.stay_order);
+    free(p.viewpoint);
+    free(p.viewpoint_order);
     return code;
 }

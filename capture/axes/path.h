@@ -12,12 +12,13 @@ typedef struct weft_axes_path {
 
 enum { WEFT_AXES_BOUND_MAX = 20000 };
 
-/* Sorts `number` [count], which index `pose`. The poses of one stay of the camera follow each other, since they share
- * what registration finds of it; where a person turns the light, those of one place of the light do. Deterministic; the
- * time grows with the square of the poses of a stay and of the stays. Errors: WEFT_SYSTEM for memory.
+/* Sorts `number` [count], which index `pose`. The poses of one viewpoint of the camera follow each other, since they
+ * share what registration finds of it; where a person turns the light, those of one place of the light do.
+ * Deterministic; the time grows with the square of the poses of a viewpoint and of the viewpoints. Errors: WEFT_SYSTEM
+ * for memory.
  *
- * The order: stays by their nearest neighbour, then segments are moved and turned round while that saves time (Or 1976;
- * Croes 1958), then the same within each stay, from the pose where the last one ended.
+ * The order: viewpoints by their nearest neighbour, then segments are moved and turned round while that saves time (Or
+ * 1976; Croes 1958), then the same within each viewpoint, from the pose where the last one ended.
  *
  * The bound: a path through n poses is a spanning tree of them, and no tree costs less than the least. A move against
  * backlash costs more than its way back, so each pair of poses is counted as min(c(a, b) + d, c(b, a) - d) with

@@ -256,7 +256,7 @@ static int expose_once(weft_tethered_camera *c, double exposure_s, CameraFilePat
     if (result >= GP_OK)
         result = release(c, exposure_s, path);
     if (result >= GP_OK)
-        *said_s = weft_shutter_said(c->camera, c->context);
+        *said_s = weft_shutter_reported(c->camera, c->context);
     return result;
 }
 

@@ -57,7 +57,7 @@ int weft_shutter_set(Camera *camera, GPContext *context, double exposure_s)
     return result;
 }
 
-double weft_shutter_said(Camera *camera, GPContext *context)
+double weft_shutter_reported(Camera *camera, GPContext *context)
 {
     CameraWidget *widget;
     const char *key, *value = NULL;

@@ -11,7 +11,7 @@
 int weft_shutter_set(Camera *camera, GPContext *context, double exposure_s);
 
 /* What the camera says its shutter is set to; 0: nothing. */
-double weft_shutter_said(Camera *camera, GPContext *context);
+double weft_shutter_reported(Camera *camera, GPContext *context);
 
 /* The longest of the times that it names; 0: it names none, or does not answer. May take a tenth of a second. */
 double weft_shutter_longest(Camera *camera, GPContext *context);

@@ -87,14 +87,14 @@ static weft_code show(void *device, weft_curtain scene, weft_error *error)
                                             "Put an evenly lit white field, out of focus, before the whole lens."};
     weft_lab_camera *c = device;
     bool covered = c->file->light.backend == WEFT_LIGHT_NONE, was_asked = c->asked_to_show;
-    const weft_person *person = &c->releases->person;
+    const weft_operator *operator= & c->releases->rig_operator;
     const char *name = c->rig.camera_name;
     char text[192];
     c->asked_to_show = scene == WEFT_CURTAIN_EVEN || (scene == WEFT_CURTAIN_DARK && covered);
     if (!c->asked_to_show && !was_asked)
         return WEFT_OK;
     snprintf(text, sizeof text, "%s%s%s%s", name ? "Camera '" : "", name ? name : "", name ? "': " : "", asked[scene]);
-    return person->ask(person->context, text, error);
+    return operator->ask(operator->context, text, error);
 }
 
 /* ---- The whole ---- */
@@ -143,13 +143,13 @@ static weft_code release_by_stage(void *context, double exposure_s, weft_error *
 static weft_code release_by_hand(void *context, double exposure_s, weft_error *error)
 {
     const weft_lab_camera *c = context;
-    const weft_person *person = &c->releases->person;
+    const weft_operator *operator= & c->releases->rig_operator;
     const char *name = c->rig.camera_name;
     char text[128];
     snprintf(text, sizeof text, "Take the photograph%s%s%s, exposed for %.6g s.", name ? " with the camera '" : "",
              name ? name : "", name ? "'" : "", exposure_s);
     pthread_mutex_lock(&c->releases->one_question);
-    weft_code code = person->ask(person->context, text, error);
+    weft_code code = operator->ask(operator->context, text, error);
     pthread_mutex_unlock(&c->releases->one_question);
     return code;
 }

@@ -16,7 +16,7 @@
 /* What releases a shutter that the camera does not release itself. All borrowed. */
 typedef struct weft_releases {
     weft_controller *controller; /* of the stage, with a contact; NULL: none */
-    weft_person person;
+    weft_operator rig_operator;
     pthread_mutex_t one_question; /* a person is asked one thing at a time */
 } weft_releases;
 

@@ -103,7 +103,7 @@ static weft_code create_stage(weft_laboratory *lab, weft_error *error)
                               .lamp_tolerance_rad = weft_rad_of_deg(file->light.lamp_tolerance_deg),
                               .level = file->light.level,
                               .warm_up_s = file->light.warm_up_s,
-                              .person = lab->request.person,
+                              .rig_operator = lab->request.rig_operator,
                               .retries = (int)file->stage.retries};
     if (file->stage.backend == WEFT_STAGE_USB) {
         WEFT_TRY(create_controller(lab, error));
@@ -130,7 +130,7 @@ static weft_code create_stage(weft_laboratory *lab, weft_error *error)
 
 static weft_code describe_cameras(weft_laboratory *lab, weft_error *error)
 {
-    lab->releases.person = lab->request.person;
+    lab->releases.rig_operator = lab->request.rig_operator;
     for (int i = 0; i < lab->file.camera_count; i++) {
         weft_lab_camera *c = &lab->camera[lab->camera_count++];
         WEFT_TRY(weft_lab_camera_describe(&lab->file, i, c, error));

@@ -9,7 +9,7 @@
 
 typedef struct weft_laboratory_request {
     const char *rig_file, *sample; /* sample: what lies in the opening, in the owner's words */
-    weft_person person;
+    weft_operator rig_operator;
     const volatile sig_atomic_t *stop; /* NULL: never; all borrowed */
 } weft_laboratory_request;
 

@@ -1,7 +1,7 @@
 #include "capture/motion/controller.h"
 
 #include "base/clock.h"
-#include "capture/motion/stage_words.h"
+#include "capture/motion/stage_messages.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -381,7 +381,7 @@ weft_lamp_switch weft_controller_lamps(weft_controller *controller)
     return (weft_lamp_switch){controller, set_lamp, abandon_lamps};
 }
 
-weft_controller_log weft_controller_said(const weft_controller *c)
+weft_controller_log weft_controller_get_log(const weft_controller *c)
 {
     weft_controller_log log = c->log;
     log.lost = c->link.lost;

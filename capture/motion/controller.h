@@ -36,6 +36,6 @@ typedef struct weft_controller_log {
     int lost, damaged, stale; /* answers */
     int replugged, restarted; /* times that it was gone; and that it had lost its references then */
 } weft_controller_log;
-weft_controller_log weft_controller_said(const weft_controller *controller);
+weft_controller_log weft_controller_get_log(const weft_controller *controller);
 
 #endif

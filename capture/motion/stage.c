@@ -13,12 +13,12 @@ static const double same_deg = 1e-5;
 struct weft_stage {
     weft_stage_parts parts;
     weft_stage *body; /* which has the axes; of several cameras, that of the first */
-    long seen;        /* body->stays, when this camera was placed last; -1: not since it was homed */
+    long seen;        /* body->viewpoints, when this camera was placed last; -1: not since it was homed */
     /* Of a body. */
     weft_axis_positions at; /* NAN: not known */
     bool homed, placed;     /* placed: since it was homed, in a pose of a photograph */
     int lamp;               /* that lights the pose */
-    long stays;             /* how often camera or sample have come to stand elsewhere */
+    long viewpoints;        /* how often camera or sample have come to stand elsewhere */
 };
 
 /* ---- Lamps ---- */
@@ -253,7 +253,7 @@ static weft_code turn_by_hand(weft_stage *stage, const weft_axis_positions *to, 
         if (!axes->axis[k].by_hand || fabs(stage->at.deg[k] - to->deg[k]) <= same_deg)
             continue;
         snprintf(text, sizeof text, "Set the axis '%s' to %.2f degrees.", axes->axis[k].name, to->deg[k]);
-        WEFT_TRY(stage->parts.person.ask(stage->parts.person.context, text, error));
+        WEFT_TRY(stage->parts.rig_operator.ask(stage->parts.rig_operator.context, text, error));
         stage->at.deg[k] = to->deg[k];
     }
     return WEFT_OK;
@@ -278,12 +278,12 @@ static double settle_time(const weft_stage *stage, const weft_axis_positions *fr
     return seconds;
 }
 
-static weft_code home(void *device, int first_stay, weft_error *error)
+static weft_code home(void *device, int first_viewpoint, weft_error *error)
 {
     weft_stage *seat = device, *stage = seat->body;
     weft_move_failure failure = WEFT_MOVE_LOST;
     weft_code code = WEFT_SYSTEM;
-    (void)first_stay;
+    (void)first_viewpoint;
     seat->seen = -1;
     if (seat != stage && stage->homed)
         return WEFT_OK;
@@ -305,10 +305,10 @@ static weft_code move(void *device, weft_angles view, weft_angles light, bool *m
     WEFT_TRY(drive(stage, &to, error));
     WEFT_TRY(turn_by_hand(stage, &to, error));
     /* Homed on the way: the references are as good as before, but not the same. */
-    stage->stays += !was_placed || !stage->placed || !weft_axes_same_stay(stage->parts.axes, &from, &to);
+    stage->viewpoints += !was_placed || !stage->placed || !weft_axes_same_viewpoint(stage->parts.axes, &from, &to);
     stage->placed = true;
-    *moved = seat->seen != stage->stays;
-    seat->seen = stage->stays;
+    *moved = seat->seen != stage->viewpoints;
+    seat->seen = stage->viewpoints;
     settle(settle_time(stage, &from, &to));
     return WEFT_OK;
 }

@@ -6,10 +6,10 @@
 #include "capture/rig.h"
 
 /* Somebody who does what no motor does. Blocks until it is done. Errors: WEFT_SYSTEM where nobody is there. */
-typedef struct weft_person {
+typedef struct weft_operator {
     void *context;
     weft_code (*ask)(void *context, const char *text, weft_error *error);
-} weft_person;
+} weft_operator;
 
 /* All borrowed. */
 typedef struct weft_stage_parts {
@@ -20,7 +20,7 @@ typedef struct weft_stage_parts {
     int lamp_count;
     double lamp_tolerance_rad; /* by which a lamp may differ from a light of the plan */
     double level, warm_up_s;   /* of the lamps, from 0 to 1; and how long they take to burn evenly */
-    weft_person person;
+    weft_operator rig_operator;
     int retries; /* of a move whose axes lost their references */
 } weft_stage_parts;
 
@@ -35,7 +35,7 @@ void weft_stage_free(weft_stage *stage);
 weft_code weft_stage_create_beside(weft_stage *stage, const weft_axes *axes, weft_stage **beside, weft_error *error);
 
 /* The ways in. The stage stays the caller's. Poses whose references were lost are taken up again after homing, which
- * begins a new stay. */
+ * begins a new viewpoint. */
 weft_rig_stage weft_stage_for_rig(weft_stage *stage);
 weft_rig_light weft_stage_light(weft_stage *stage);
 

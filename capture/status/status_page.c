@@ -22,8 +22,8 @@ struct weft_status_page {
     char folder[PATH_MAX];
     const weft_session *session;
     const char *camera;      /* NULL: there is one */
-    int stay;                /* of the last photograph; -1: none yet */
-    int *shown, shown_count; /* [shot_count] first shots of the stays */
+    int viewpoint;           /* of the last photograph; -1: none yet */
+    int *shown, shown_count; /* [shot_count] first shots of the viewpoints */
     lamp_level *lamp;        /* [shot_count] */
     int lamp_count, noted;
 };
@@ -47,7 +47,7 @@ weft_code weft_status_page_begin(const char *folder, const weft_session *session
     snprintf(status->folder, sizeof status->folder, "%s", folder);
     status->session = session;
     status->camera = camera;
-    status->stay = -1;
+    status->viewpoint = -1;
     status->shown = calloc((size_t)session->shot_count, sizeof *status->shown);
     status->lamp = calloc((size_t)session->shot_count, sizeof *status->lamp);
     if (!status->shown || !status->lamp) {
@@ -164,7 +164,7 @@ static void write_faults(weft_page *page, const weft_status_counts *counts, cons
 
 static void write_gallery(weft_page *page, const weft_status_page *status)
 {
-    fputs("<h2>The first photograph of each stay</h2><div class=\"row even\">", page->html);
+    fputs("<h2>The first photograph of each viewpoint</h2><div class=\"row even\">", page->html);
     for (int i = 0; i < status->shown_count; i++) {
         const weft_shot *shot = &status->session->shot[status->shown[i]];
         fprintf(page->html,
@@ -204,9 +204,9 @@ weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_s
         return WEFT_OK;
     measure_lamp(status, shot, record, white);
     status->noted++;
-    if (record->stay == status->stay)
+    if (record->viewpoint == status->viewpoint)
         return WEFT_OK;
-    status->stay = record->stay;
+    status->viewpoint = record->viewpoint;
     status->shown[status->shown_count++] = shot;
     WEFT_TRY(weft_make_folder(status->folder, error));
     WEFT_TRY(write_thumbnail(status, shot, samples, error));

@@ -1,5 +1,5 @@
 /* A page that tells, while photographs are taken, how it goes: how many, how long still, how steady the lamp is, and
- * what was repeated. It is rewritten when a stay is over. */
+ * what was repeated. It is rewritten when a viewpoint is over. */
 #ifndef WEFT_CAPTURE_STATUS_STATUS_PAGE_H
 #define WEFT_CAPTURE_STATUS_STATUS_PAGE_H
 
@@ -20,9 +20,9 @@ typedef struct weft_status_page weft_status_page;
 weft_code weft_status_page_begin(const char *folder, const weft_session *session, const char *camera,
                                  weft_status_page **status, weft_error *error);
 
-/* Notes the photograph of a shot: the first one of a stay is shown, and the lamp is measured on the white patches of
- * each, where they do not clip and the light stands at most 60 degrees from the zenith. `white` is what they show above
- * the black level, in raw values. Writes the page when a stay was over. Errors: WEFT_SYSTEM. */
+/* Notes the photograph of a shot: the first one of a viewpoint is shown, and the lamp is measured on the white patches
+ * of each, where they do not clip and the light stands at most 60 degrees from the zenith. `white` is what they show
+ * above the black level, in raw values. Writes the page when a viewpoint was over. Errors: WEFT_SYSTEM. */
 weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record, double white,
                                 const uint16_t *samples, const weft_status_counts *counts, weft_error *error);
 

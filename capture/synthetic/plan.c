@@ -1,7 +1,7 @@
 #include "capture/synthetic/plan.h"
 
 #include "capture/synthetic/dice.h"
-#include "capture/synthetic/mishap.h"
+#include "capture/synthetic/faults.h"
 
 #include <stdio.h>
 

@@ -15,7 +15,7 @@ typedef struct weft_truth_request {
  * WEFT_SYSTEM. */
 weft_code weft_truth_check_path(const weft_truth_request *request, const weft_session *session, weft_error *error);
 
-/* Removes what was left by a process that died here, and writes, atomically, the true pose of every stay, the true
+/* Removes what was left by a process that died here, and writes, atomically, the true pose of every viewpoint, the true
  * camera, the true light position of every shot, and the reflectance of a choice of shots. Follows from the rig and the
  * journal, whatever interruptions the session had. Parallel. Errors: WEFT_SYSTEM. */
 weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session, const weft_virtual_rig *rig,

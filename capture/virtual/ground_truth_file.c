@@ -10,11 +10,11 @@
 
 /* The contents of the file, all owned. */
 typedef struct truth {
-    int stay_count, shot_count, image_count, size;
-    double *rotation;       /* [stay][3][3] */
-    double *translation_mm; /* [stay][3] */
+    int viewpoint_count, shot_count, image_count, size;
+    double *rotation;       /* [viewpoint][3][3] */
+    double *translation_mm; /* [viewpoint][3] */
     double *light_mm;       /* [shot][3] */
-    int *stay;              /* [shot] */
+    int *viewpoint;         /* [shot] */
     int *image_shot;        /* [image] */
     float *reflectance;     /* [image][size][size][3] */
 } truth;
@@ -24,7 +24,7 @@ static void free_truth(truth *t)
     free(t->rotation);
     free(t->translation_mm);
     free(t->light_mm);
-    free(t->stay);
+    free(t->viewpoint);
     free(t->image_shot);
     free(t->reflectance);
 }
@@ -33,15 +33,16 @@ static weft_code allocate_truth(const weft_truth_request *request, const weft_se
                                 weft_error *error)
 {
     size_t shots = (size_t)session->shot_count, texels = (size_t)request->size * (size_t)request->size;
-    *t = (truth){.stay_count = 1, .shot_count = session->shot_count, .size = request->size};
+    *t = (truth){.viewpoint_count = 1, .shot_count = session->shot_count, .size = request->size};
     for (int i = 0; i < session->shot_count; i++)
-        t->stay_count = session->record[i].stay >= t->stay_count ? session->record[i].stay + 1 : t->stay_count;
-    t->rotation = calloc((size_t)t->stay_count * 9, sizeof *t->rotation);
-    t->translation_mm = calloc((size_t)t->stay_count * 3, sizeof *t->translation_mm);
+        t->viewpoint_count =
+            session->record[i].viewpoint >= t->viewpoint_count ? session->record[i].viewpoint + 1 : t->viewpoint_count;
+    t->rotation = calloc((size_t)t->viewpoint_count * 9, sizeof *t->rotation);
+    t->translation_mm = calloc((size_t)t->viewpoint_count * 3, sizeof *t->translation_mm);
     t->light_mm = calloc(shots * 3, sizeof *t->light_mm);
-    t->stay = calloc(shots, sizeof *t->stay);
+    t->viewpoint = calloc(shots, sizeof *t->viewpoint);
     t->image_shot = calloc((size_t)request->image_count, sizeof *t->image_shot);
-    if (!t->rotation || !t->translation_mm || !t->light_mm || !t->stay || !t->image_shot)
+    if (!t->rotation || !t->translation_mm || !t->light_mm || !t->viewpoint || !t->image_shot)
         return weft_fail_memory(error, "ground truth", shots * 3 * sizeof(double));
     t->image_count = weft_truth_choose(session, request->image_count, t->image_shot);
     t->reflectance = calloc((size_t)t->image_count * texels * 3, sizeof *t->reflectance);
@@ -60,22 +61,22 @@ static void store_vector(double *place, weft_vec3 v)
 static void fill_poses(const weft_session *session, const weft_virtual_world *world, truth *t)
 {
     for (int shot = 0; shot < session->shot_count; shot++) {
-        int stay = session->record[shot].stay;
-        weft_pose pose = weft_virtual_world_pose(world, session->shot[shot].view, stay);
-        memcpy(t->rotation + 9 * (size_t)stay, pose.rotation, sizeof pose.rotation);
-        store_vector(t->translation_mm + 3 * (size_t)stay, pose.translation);
-        weft_vec3 light = weft_virtual_world_light(world, session->shot[shot].light_driven, stay);
+        int viewpoint = session->record[shot].viewpoint;
+        weft_pose pose = weft_virtual_world_pose(world, session->shot[shot].view, viewpoint);
+        memcpy(t->rotation + 9 * (size_t)viewpoint, pose.rotation, sizeof pose.rotation);
+        store_vector(t->translation_mm + 3 * (size_t)viewpoint, pose.translation);
+        weft_vec3 light = weft_virtual_world_light(world, session->shot[shot].light_driven, viewpoint);
         store_vector(t->light_mm + 3 * (size_t)shot, light);
-        t->stay[shot] = stay;
+        t->viewpoint[shot] = viewpoint;
     }
 }
 
 static void fill_image(const weft_session *session, const weft_virtual_rig *rig, int shot, int size, float *reflectance)
 {
-    int stay = session->record[shot].stay;
-    weft_pose pose = weft_virtual_world_pose(&rig->world, session->shot[shot].view, stay);
+    int viewpoint = session->record[shot].viewpoint;
+    weft_pose pose = weft_virtual_world_pose(&rig->world, session->shot[shot].view, viewpoint);
     weft_vec3 camera = weft_pose_camera_position(&pose);
-    weft_vec3 light = weft_virtual_world_light(&rig->world, session->shot[shot].light_driven, stay);
+    weft_vec3 light = weft_virtual_world_light(&rig->world, session->shot[shot].light_driven, viewpoint);
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
@@ -123,14 +124,14 @@ static bool write_camera(hid_t file, const weft_camera *c)
 
 static bool write_arrays(hid_t file, const truth *t)
 {
-    hsize_t stays = (hsize_t)t->stay_count, shots = (hsize_t)t->shot_count, images = (hsize_t)t->image_count;
+    hsize_t viewpoints = (hsize_t)t->viewpoint_count, shots = (hsize_t)t->shot_count, images = (hsize_t)t->image_count;
     hsize_t size = (hsize_t)t->size;
-    hsize_t rotation[3] = {stays, 3, 3}, translation[2] = {stays, 3}, light[2] = {shots, 3};
+    hsize_t rotation[3] = {viewpoints, 3, 3}, translation[2] = {viewpoints, 3}, light[2] = {shots, 3};
     hsize_t reflectance[4] = {images, size, size, 3};
     return write_array(file, "rotation", H5T_NATIVE_DOUBLE, 3, rotation, t->rotation) &&
            write_array(file, "translation_mm", H5T_NATIVE_DOUBLE, 2, translation, t->translation_mm) &&
            write_array(file, "light_mm", H5T_NATIVE_DOUBLE, 2, light, t->light_mm) &&
-           write_array(file, "stay", H5T_NATIVE_INT, 1, &shots, t->stay) &&
+           write_array(file, "stay", H5T_NATIVE_INT, 1, &shots, t->viewpoint) &&
            write_array(file, "image_shot", H5T_NATIVE_INT, 1, &images, t->image_shot) &&
            write_array(file, "reflectance", H5T_NATIVE_FLOAT, 4, reflectance, t->reflectance);
 }

@@ -1,6 +1,6 @@
 #include "capture/virtual/sensor.h"
 
-#include "capture/virtual/sensor_faults.h"
+#include "capture/virtual/sensor_defects.h"
 
 #include <stdlib.h>
 
@@ -44,13 +44,13 @@ weft_code weft_virtual_sensor_make(const weft_virtual_settings *s, uint64_t seed
     };
     if (!sensor->normal)
         return weft_fail_memory(error, "noise table", WEFT_NORMAL_COUNT * sizeof(float));
-    return s->sensor_faults != 0 ? weft_virtual_sensor_faults_make(s, seed, &sensor->faults, error) : WEFT_OK;
+    return s->sensor_faults != 0 ? weft_virtual_sensor_defects_make(s, seed, &sensor->faults, error) : WEFT_OK;
 }
 
 void weft_virtual_sensor_free(weft_virtual_sensor *sensor)
 {
     free((float *)sensor->normal);
-    weft_virtual_sensor_faults_free(&sensor->faults);
+    weft_virtual_sensor_defects_free(&sensor->faults);
     *sensor = (weft_virtual_sensor){0};
 }
 
@@ -65,8 +65,8 @@ static inline uint32_t hash_sample(uint32_t index, uint32_t key, uint32_t second
     return h ^ h >> 16;
 }
 
-/* What the faults of the sensor make of the electrons of samples from `first` on. */
-static void spoil(const weft_virtual_sensor_faults *faults, size_t first, int count, float exposure_s, uint64_t key,
+/* What the defects of the sensor make of the electrons of samples from `first` on. */
+static void spoil(const weft_virtual_sensor_defects *faults, size_t first, int count, float exposure_s, uint64_t key,
                   float *electrons)
 {
     for (int i = 0; i < count; i++) {

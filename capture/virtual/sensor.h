@@ -7,18 +7,18 @@
 #include <stddef.h>
 
 /* What is wrong with the pixels of a sensor: [height][width][3], or NULL where nothing is. */
-typedef struct weft_virtual_sensor_faults {
+typedef struct weft_virtual_sensor_defects {
     float *response;       /* electrons where a sensor without faults has one */
     float *dark_electrons; /* per second */
     uint8_t *hot;          /* 1: that of each frame is half or one and a half of it, by chance */
-} weft_virtual_sensor_faults;
+} weft_virtual_sensor_defects;
 
 typedef struct weft_virtual_sensor {
     float read_noise;            /* electrons */
     float electrons_per_step;    /* the full well fills the steps above the black level */
     int black_level, full_scale; /* raw values */
     const float *normal;         /* quantiles of the standard normal, WEFT_NORMAL_COUNT of them */
-    weft_virtual_sensor_faults faults;
+    weft_virtual_sensor_defects faults;
 } weft_virtual_sensor;
 
 enum { WEFT_NORMAL_BITS = 12, WEFT_NORMAL_COUNT = 1 << WEFT_NORMAL_BITS };

@@ -1,5 +1,5 @@
 /* What the virtual camera sees from one place: everything about its photographs that does not depend on the light. Made
- * once for every stay, used for all its lights. */
+ * once for every viewpoint, used for all its lights. */
 #ifndef WEFT_CAPTURE_VIRTUAL_VIEW_H
 #define WEFT_CAPTURE_VIRTUAL_VIEW_H
 

@@ -18,14 +18,14 @@ typedef struct virtual_devices {
     char *identity;
     weft_virtual_optics optics;
     weft_virtual_sensor sensor;
-    int next_stay, stay;
+    int next_viewpoint, viewpoint;
     bool homed, camera_placed, light_placed;
     bool own_light, *light_on; /* whether it burns: its own, or that of the first of several cameras */
     weft_angles view;          /* where the camera axes stand */
     weft_pose pose;
     weft_vec3 light; /* plate frame, mm */
     weft_virtual_view seen;
-    bool seen_valid; /* whether `seen` belongs to this stay */
+    bool seen_valid; /* whether `seen` belongs to this viewpoint */
     float *radiance; /* [height][width][3] under full power, where the light is placed */
     weft_curtain scene;
     float *field; /* [height][width][3] of the even field; NULL before it was seen */
@@ -33,11 +33,11 @@ typedef struct virtual_devices {
 
 /* ---- Stage ---- */
 
-static weft_code home(void *device, int first_stay, weft_error *error)
+static weft_code home(void *device, int first_viewpoint, weft_error *error)
 {
     (void)error;
     virtual_devices *devices = device;
-    devices->next_stay = first_stay;
+    devices->next_viewpoint = first_viewpoint;
     devices->homed = true;
     devices->camera_placed = devices->light_placed = false;
     return WEFT_OK;
@@ -51,9 +51,9 @@ static bool stands_at(const virtual_devices *devices, weft_angles view)
 static void move_camera(virtual_devices *devices, weft_angles view)
 {
     devices->camera_placed = true;
-    devices->stay = devices->next_stay++;
+    devices->viewpoint = devices->next_viewpoint++;
     devices->view = view;
-    devices->pose = weft_virtual_world_pose(devices->world, view, devices->stay);
+    devices->pose = weft_virtual_world_pose(devices->world, view, devices->viewpoint);
     devices->seen_valid = devices->light_placed = false;
 }
 
@@ -82,7 +82,7 @@ static weft_code move(void *device, weft_angles view, weft_angles light, bool *m
     *moved = !stands_at(devices, view);
     if (*moved)
         move_camera(devices, view);
-    devices->light = weft_virtual_world_light(devices->world, light, devices->stay);
+    devices->light = weft_virtual_world_light(devices->world, light, devices->viewpoint);
     WEFT_TRY(look(devices, error));
     devices->light_placed = true;
     return WEFT_OK;

@@ -6,7 +6,7 @@
 #include "capture/virtual/sample.h"
 #include "capture/virtual/world.h"
 
-/* What makes a virtual rig: the same request and the same stays always give the same photographs. */
+/* What makes a virtual rig: the same request and the same viewpoints always give the same photographs. */
 typedef struct weft_virtual_request {
     const char *sample; /* weave or stitch file */
     uint64_t seed;      /* below 2^63 */

@@ -74,12 +74,12 @@ weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, 
     return weft_virtual_world_of_camera(settings, seed, 0);
 }
 
-weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles view, int stay)
+weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles view, int viewpoint)
 {
     const weft_virtual_settings *s = &world->settings;
-    uint64_t index = 2 * (uint64_t)stay;
-    weft_vec3 turn = weft_random_normal3(world->camera_seed, WEFT_RANDOM_STAY, index);
-    weft_vec3 shift = weft_random_normal3(world->camera_seed, WEFT_RANDOM_STAY, index + 1);
+    uint64_t index = 2 * (uint64_t)viewpoint;
+    weft_vec3 turn = weft_random_normal3(world->camera_seed, WEFT_RANDOM_VIEWPOINT, index);
+    weft_vec3 shift = weft_random_normal3(world->camera_seed, WEFT_RANDOM_VIEWPOINT, index + 1);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
                                       weft_scale(shift, s->stay_translation_mm));
     weft_pose nominal = s->axes != 0 ? weft_virtual_goniometer_pose(s, world->camera_seed, view)
@@ -88,18 +88,18 @@ weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles v
     return compose(&in_rig, &world->mounting);
 }
 
-/* A number for a stay and a commanded direction, insensitive to the last digits of a stored angle. */
-static uint64_t index_of_move(weft_angles driven, int stay)
+/* A number for a viewpoint and a commanded direction, insensitive to the last digits of a stored angle. */
+static uint64_t index_of_move(weft_angles driven, int viewpoint)
 {
     uint64_t theta = (uint64_t)llround(weft_deg_of_rad(driven.theta_rad) * 1e4);
     uint64_t phi = (uint64_t)llround(weft_deg_of_rad(driven.phi_rad) * 1e4);
-    return ((uint64_t)stay * 1000003 + theta) * 10000019 + phi;
+    return ((uint64_t)viewpoint * 1000003 + theta) * 10000019 + phi;
 }
 
-weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles driven, int stay)
+weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles driven, int viewpoint)
 {
     const weft_virtual_settings *s = &world->settings;
-    uint64_t index = index_of_move(driven, s->cameras > 1 ? 0 : stay);
+    uint64_t index = index_of_move(driven, s->cameras > 1 ? 0 : viewpoint);
     weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_LIGHT, index);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->light_rotation_deg)), (weft_vec3){0, 0, 0});
     weft_vec3 nominal = weft_scale(weft_direction_of_angles(driven), s->rig.light_distance_mm);

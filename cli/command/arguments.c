@@ -201,7 +201,7 @@ static void check_inputs(const arguments *a, struct argp_state *state)
         const weft_option *option = a->row[row].option;
         const char *name = text_of(a, row);
         if (name && option->kind == WEFT_OPTION_INPUT)
-            insist(weft_argument_belongs(option->argument, name, &error), &error, state);
+            insist(weft_argument_check_type(option->argument, name, &error), &error, state);
     }
 }
 
@@ -212,7 +212,7 @@ static void check_scene_inputs(const weft_scene_request *scene, struct argp_stat
     for (int i = 0; i < scene->option_count; i++) {
         const weft_option *option = &scene->option[i].setting->option;
         if (option->name && option->kind == WEFT_OPTION_NAME)
-            insist(weft_argument_belongs(option->argument, scene->option[i].text, &error), &error, state);
+            insist(weft_argument_check_type(option->argument, scene->option[i].text, &error), &error, state);
     }
 }
 

@@ -18,7 +18,7 @@ void weft_arguments_parse(const weft_command *command, int argc, char **argv, vo
 /* Whether a file is of a kind that the name of an argument allows, as far as both tell: "NAME.weft" is a material,
  * "SESSION" a folder. What is not there, or tells nothing, is left to its reader. Errors: WEFT_BAD_INPUT naming the
  * file, what it is and what belongs in its place. */
-weft_code weft_argument_belongs(const char *argument, const char *path, weft_error *error);
+weft_code weft_argument_check_type(const char *argument, const char *path, weft_error *error);
 
 /* Visits every option of a command: its own, those of a scene with their setting (else NULL), the common ones. Options
  * without a name are arguments that are known by their place, in the order of the places. */

@@ -1,6 +1,6 @@
 #include "registration/axes/calibration.h"
 
-#include "registration/axes/words.h"
+#include "registration/axes/messages.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,7 +62,7 @@ static weft_code free_lines(work *w, weft_error *error)
         turning += places > 1;
         fit->terms.free[weft_term_index(WEFT_TERM_LINE, joint)] = places >= FEWEST_PLACES;
         if (places < FEWEST_PLACES)
-            WEFT_TRY(weft_axes_say_places(&w->report->not_told, joint, places, error));
+            WEFT_TRY(weft_axes_say_places(&w->report->undetermined, joint, places, error));
     }
     if (turning == 0)
         return weft_fail(error, WEFT_BAD_INPUT, "all %d shots are of one pose: no axis turns", used);
@@ -181,7 +181,7 @@ static weft_code say_held_terms(work *w, weft_error *error)
         if (!may_be_free(w, index))
             continue;
         WEFT_TRY(try_term(w, index, &gain, &with, error));
-        WEFT_TRY(weft_axes_say_held(&w->report->not_told, &with, &w->nominal->camera, index, error));
+        WEFT_TRY(weft_axes_say_held(&w->report->undetermined, &with, &w->nominal->camera, index, error));
     }
     return WEFT_OK;
 }
@@ -263,5 +263,5 @@ weft_code weft_axes_calibrate(weft_axes_shot *shot, int count, const weft_rig_po
 void weft_axes_report_free(weft_axes_report *report)
 {
     weft_lines_free(&report->told);
-    weft_lines_free(&report->not_told);
+    weft_lines_free(&report->undetermined);
 }

@@ -1,7 +1,7 @@
 #include "registration/axes/sightings.h"
 
-#include "registration/viewpoint_photographs.h"
 #include "registration/pose/pose_chain.h"
+#include "registration/viewpoint_photographs.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,16 +11,16 @@ static const double least_correlation = 0.8;
 
 typedef struct work {
     const weft_session *session;
-    weft_sensor_faults faults;
+    weft_sensor_defects faults;
     weft_survey survey;
     weft_sight sight;
     weft_fault *fault; /* [shot_count] */
 } work;
 
-static weft_code name_shot(const work *w, const weft_stay *stay, weft_axes_shot *shot, weft_error *error)
+static weft_code name_shot(const work *w, const weft_viewpoint *viewpoint, weft_axes_shot *shot, weft_error *error)
 {
     char path[512];
-    weft_session_photograph_path(w->session, stay->shot[0], path, sizeof path);
+    weft_session_photograph_path(w->session, viewpoint->shot[0], path, sizeof path);
     size_t folder = strlen(w->session->folder) + 1;
     shot->name = strdup(strlen(path) > folder ? path + folder : path);
     return shot->name ? WEFT_OK : weft_fail_memory(error, "a name", sizeof path);
@@ -37,12 +37,12 @@ static void mark(const work *w, const weft_homography *homography, weft_axes_sho
     }
 }
 
-static weft_code look(const work *w, const weft_stay *stay, const float *photograph, weft_axes_shot *shot,
+static weft_code look(const work *w, const weft_viewpoint *viewpoint, const float *photograph, weft_axes_shot *shot,
                       weft_error *error)
 {
     /* The target may be anywhere in the photograph: that is what the axes are calibrated for. */
     const weft_pose_limits limits = {2 * weft_target_radius_mm(&w->session->target), least_correlation};
-    weft_pose promised = weft_session_pose(w->session, w->survey.view[stay->view]);
+    weft_pose promised = weft_session_pose(w->session, w->survey.view[viewpoint->view]);
     weft_homography homography = weft_homography_of_pose(&w->session->camera, &promised);
     weft_view_pose pose;
     WEFT_TRY(weft_pose_find(&w->sight, &w->session->target, photograph, &homography, (weft_point_spread){0, 0}, &limits,
@@ -55,33 +55,33 @@ static weft_code look(const work *w, const weft_stay *stay, const float *photogr
     return WEFT_OK;
 }
 
-static weft_code read_stay(const work *w, const weft_stay *stay, weft_axes_shot *shot, weft_error *error)
+static weft_code read_viewpoint(const work *w, const weft_viewpoint *viewpoint, weft_axes_shot *shot, weft_error *error)
 {
     weft_viewpoint_photographs photographs;
-    shot->turns = w->session->turns[stay->shot[0]];
-    WEFT_TRY(name_shot(w, stay, shot, error));
-    WEFT_TRY(weft_viewpoint_photographs_read(&w->faults, &w->sight, stay, 0, w->fault, &photographs, error));
+    shot->turns = w->session->turns[viewpoint->shot[0]];
+    WEFT_TRY(name_shot(w, viewpoint, shot, error));
+    WEFT_TRY(weft_viewpoint_photographs_read(&w->faults, &w->sight, viewpoint, 0, w->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
-        code = look(w, stay, photographs.average, shot, error);
+        code = look(w, viewpoint, photographs.average, shot, error);
     else
-        snprintf(shot->left_out, sizeof shot->left_out, "%.150s", w->fault[stay->shot[0]].reason);
+        snprintf(shot->left_out, sizeof shot->left_out, "%.150s", w->fault[viewpoint->shot[0]].reason);
     weft_viewpoint_photographs_free(&photographs);
     return code;
 }
 
-static weft_code read_stays(const work *w, const weft_progress *progress, weft_axes_sightings *sightings,
-                            weft_error *error)
+static weft_code read_viewpoints(const work *w, const weft_progress *progress, weft_axes_sightings *sightings,
+                                 weft_error *error)
 {
-    int stays = w->survey.stay_count, count = stays < WEFT_AXES_MOST ? stays : WEFT_AXES_MOST;
+    int viewpoints = w->survey.viewpoint_count, count = viewpoints < WEFT_AXES_MOST ? viewpoints : WEFT_AXES_MOST;
     sightings->shot = calloc((size_t)count, sizeof *sightings->shot);
     if (!sightings->shot)
         return weft_fail_memory(error, "shots", (size_t)count * sizeof *sightings->shot);
     for (sightings->count = 0; sightings->count < count; sightings->count++) {
-        int stay = (int)((long)sightings->count * stays / count);
+        int viewpoint = (int)((long)sightings->count * viewpoints / count);
         weft_progress_report(progress, "finding the target", sightings->count, count);
         weft_axes_shot *shot = &sightings->shot[sightings->count];
-        weft_code code = read_stay(w, &w->survey.stay[stay], shot, error);
+        weft_code code = read_viewpoint(w, &w->survey.viewpoint[viewpoint], shot, error);
         if (code != WEFT_OK) {
             sightings->count++;
             return code;
@@ -103,7 +103,7 @@ static weft_code prepare(work *w, weft_error *error)
     if (!w->fault)
         return weft_fail_memory(error, "shots", (size_t)session->shot_count * sizeof *w->fault);
     WEFT_TRY(weft_survey_make(session, &w->survey, error));
-    WEFT_TRY(weft_sensor_faults_find(session, &w->faults, error));
+    WEFT_TRY(weft_sensor_defects_find(session, &w->faults, error));
     WEFT_TRY(weft_sight_create(&session->camera, &session->target, session->camera.fx / session->camera_distance_mm,
                                &w->sight, error));
     weft_sensor_blind(&w->faults, &w->sight);
@@ -119,10 +119,10 @@ weft_code weft_axes_sightings_read(const weft_session *session, const weft_progr
     if (code == WEFT_OK)
         sightings->photographs = session->shot_count - w.survey.untaken;
     if (code == WEFT_OK)
-        code = read_stays(&w, progress, sightings, error);
+        code = read_viewpoints(&w, progress, sightings, error);
     if (code != WEFT_OK)
         weft_axes_sightings_free(sightings);
-    weft_sensor_faults_free(&w.faults);
+    weft_sensor_defects_free(&w.faults);
     weft_sight_free(&w.sight);
     weft_survey_free(&w.survey);
     free(w.fault);

@@ -38,7 +38,7 @@ typedef struct weft_photographs_photograph {
     char remark[192];        /* why it is left out; empty where it is used */
     char colours[200];       /* what the file says of its colours; empty where it is sRGB, or nothing is said */
     weft_colour file_colour; /* to linear sRGB, by that; no terms where there is nothing to do */
-    bool is_twin;            /* left out as the darker one of a pair, and sound otherwise */
+    bool is_darker_of_pair;  /* left out as the darker one of a pair, and sound otherwise */
 
     int marker_count;                                                 /* found; each has four corners */
     int corner_count;                                                 /* of them, that lie on the plane of the sheet */

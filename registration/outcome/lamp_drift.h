@@ -5,18 +5,19 @@
 
 #include "registration/outcome/outcome.h"
 
-/* The mean white level (registration/radiometry/radiometry.h) of the photographs of a stay on which it was measured. */
-typedef struct weft_stay_white {
+/* The mean white level (registration/radiometry/radiometry.h) of the photographs of a viewpoint on which it was
+ * measured. */
+typedef struct weft_viewpoint_white {
     int photographs; /* 0: none */
     double level[3];
-} weft_stay_white;
+} weft_viewpoint_white;
 
 /* Pure. */
-weft_stay_white weft_stay_white_of(const weft_registration *registration, int stay);
+weft_viewpoint_white weft_viewpoint_white_of(const weft_registration *registration, int viewpoint);
 
-/* Of the stays, brightest and dimmest against the mean of all: 0.01 is one per cent more light. */
+/* Of the viewpoints, brightest and dimmest against the mean of all: 0.01 is one per cent more light. */
 typedef struct weft_lamp_drift {
-    int stays; /* it was measured in */
+    int viewpoints; /* it was measured in */
     double lowest, highest;
 } weft_lamp_drift;
 

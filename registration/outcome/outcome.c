@@ -14,7 +14,7 @@ void weft_registration_free(weft_registration *registration)
 }
 
 double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
-                                            int stay)
+                                            int viewpoint)
 {
-    return registration->pose[stay].uncertainty_mm * registration->settings.width / session->target.opening_mm;
+    return registration->pose[viewpoint].uncertainty_mm * registration->settings.width / session->target.opening_mm;
 }

@@ -4,7 +4,7 @@
 
 #include "registration/outcome/survey.h"
 #include "registration/pose/pose_chain.h"
-#include "registration/radiometry/sensor_faults.h"
+#include "registration/radiometry/sensor_defects.h"
 #include "registration/radiometry/vignetting.h"
 
 typedef struct weft_registration_settings {
@@ -23,7 +23,7 @@ typedef struct weft_fault {
 typedef struct weft_bend_found {
     weft_bend bend;
     double unit_mm, standard_error_mm; /* random error of its height at the distance unit_mm, worst of its terms */
-    int stays;                         /* it was found from; 0: it was not */
+    int viewpoints;                    /* it was found from; 0: it was not */
 } weft_bend_found;
 
 /* What registration finds of the rig that its calibration does not say. */
@@ -33,31 +33,31 @@ typedef struct weft_rig_found {
     weft_sensor_summary sensor;
 } weft_rig_found;
 
-/* Indices of shots and stays are those of the session and the survey. */
+/* Indices of shots and viewpoints are those of the session and the survey. */
 typedef struct weft_registration {
     weft_registration_settings settings;
     weft_survey survey;
     weft_rig_found found;
-    weft_view_pose *pose; /* [survey.stay_count] */
-    int *used;            /* [survey.stay_count] photographs of the stay that are in the dataset */
+    weft_view_pose *pose; /* [survey.viewpoint_count] */
+    int *used;            /* [survey.viewpoint_count] photographs of the viewpoint that are in the dataset */
     weft_fault *fault;    /* [shot_count] */
     weft_white *white;    /* [shot_count]; level as used, patches 0 where it was estimated or there is none */
     float *saturated;     /* [shot_count] fraction of its texels that are masked as saturated */
     int image_count;      /* photographs in the dataset */
     int fault_count;      /* photographs that cannot be used */
-    int failed_stays;
+    int failed_viewpoints;
     int estimated_whites; /* photographs whose white level is that of others */
     double seconds;
 } weft_registration;
 
 void weft_registration_free(weft_registration *registration);
 
-/* Random error of a stay's positions in texels of the dataset; errors of the calibration are not in it. Pure. */
+/* Random error of a viewpoint's positions in texels of the dataset; errors of the calibration are not in it. Pure. */
 double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
-                                            int stay);
+                                            int viewpoint);
 
-/* JSON text for the dataset: session, calibration, settings and the outcome of every stay; of several cameras, an array
- * "cameras" of that. Owned by the caller (free). NULL where memory is short. */
+/* JSON text for the dataset: session, calibration, settings and the outcome of every viewpoint; of several cameras, an
+ * array "cameras" of that. Owned by the caller (free). NULL where memory is short. */
 char *weft_registration_provenance(const weft_session *sessions, int count, const weft_registration *registrations);
 
 #endif

@@ -30,7 +30,7 @@ static void list_views(const weft_session *session, weft_survey *survey)
 }
 
 typedef struct shot_key {
-    int view, stay, shot;
+    int view, viewpoint, shot;
 } shot_key;
 
 static int compare_keys(const void *first, const void *second)
@@ -38,18 +38,19 @@ static int compare_keys(const void *first, const void *second)
     const shot_key *a = first, *b = second;
     if (a->view != b->view)
         return a->view < b->view ? -1 : 1;
-    if (a->stay != b->stay)
-        return a->stay < b->stay ? -1 : 1;
+    if (a->viewpoint != b->viewpoint)
+        return a->viewpoint < b->viewpoint ? -1 : 1;
     return a->shot < b->shot ? -1 : a->shot > b->shot;
 }
 
-static void list_stays(const shot_key *key, int count, weft_survey *survey)
+static void list_viewpoints(const shot_key *key, int count, weft_survey *survey)
 {
     for (int i = 0; i < count; i++) {
         survey->order[i] = key[i].shot;
-        if (i == 0 || key[i].view != key[i - 1].view || key[i].stay != key[i - 1].stay)
-            survey->stay[survey->stay_count++] = (weft_stay){key[i].view, key[i].stay, 0, survey->order + i};
-        survey->stay[survey->stay_count - 1].count++;
+        if (i == 0 || key[i].view != key[i - 1].view || key[i].viewpoint != key[i - 1].viewpoint)
+            survey->viewpoint[survey->viewpoint_count++] =
+                (weft_viewpoint){key[i].view, key[i].viewpoint, 0, survey->order + i};
+        survey->viewpoint[survey->viewpoint_count - 1].count++;
     }
 }
 
@@ -58,19 +59,19 @@ weft_code weft_survey_make(const weft_session *session, weft_survey *survey, wef
     size_t shots = session->shot_count > 0 ? (size_t)session->shot_count : 1;
     *survey = (weft_survey){.view = malloc(shots * sizeof *survey->view),
                             .view_of_shot = malloc(shots * sizeof *survey->view_of_shot),
-                            .stay = malloc(shots * sizeof *survey->stay),
+                            .viewpoint = malloc(shots * sizeof *survey->viewpoint),
                             .order = malloc(shots * sizeof *survey->order)};
     shot_key *key = malloc(shots * sizeof *key);
     weft_code code = WEFT_OK;
     int taken = 0;
-    if (!survey->view || !survey->view_of_shot || !survey->stay || !survey->order || !key) {
+    if (!survey->view || !survey->view_of_shot || !survey->viewpoint || !survey->order || !key) {
         code = weft_fail_memory(error, "the survey of a session", shots * 64);
         goto done;
     }
     list_views(session, survey);
     for (int shot = 0; shot < session->shot_count; shot++) {
         if (session->record[shot].taken)
-            key[taken++] = (shot_key){survey->view_of_shot[shot], session->record[shot].stay, shot};
+            key[taken++] = (shot_key){survey->view_of_shot[shot], session->record[shot].viewpoint, shot};
     }
     survey->untaken = session->shot_count - taken;
     if (taken == 0) {
@@ -79,7 +80,7 @@ weft_code weft_survey_make(const weft_session *session, weft_survey *survey, wef
         goto done;
     }
     qsort(key, (size_t)taken, sizeof *key, compare_keys);
-    list_stays(key, taken, survey);
+    list_viewpoints(key, taken, survey);
 done:
     free(key);
     if (code != WEFT_OK)
@@ -91,7 +92,7 @@ void weft_survey_free(weft_survey *survey)
 {
     free(survey->view);
     free(survey->view_of_shot);
-    free(survey->stay);
+    free(survey->viewpoint);
     free(survey->order);
     *survey = (weft_survey){0};
 }

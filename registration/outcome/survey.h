@@ -1,25 +1,25 @@
-/* What a session holds, as registration needs it: its distinct views, and its photographs by stay. */
+/* What a session holds, as registration needs it: its distinct views, and its photographs by viewpoint. */
 #ifndef WEFT_REGISTRATION_OUTCOME_SURVEY_H
 #define WEFT_REGISTRATION_OUTCOME_SURVEY_H
 
 #include "btf/session/session.h"
 
 /* Photographs taken while the camera stood still. */
-typedef struct weft_stay {
-    int view; /* index into weft_survey.view */
-    int stay; /* of the session */
+typedef struct weft_viewpoint {
+    int view;      /* index into weft_survey.view */
+    int viewpoint; /* of the session */
     int count;
     const int *shot; /* [count] in the order of the plan; owned by the survey */
-} weft_stay;
+} weft_viewpoint;
 
 typedef struct weft_survey {
     int view_count;
     weft_angles *view; /* [view_count] in the order of the plan */
     int *view_of_shot; /* [shot_count] */
-    int stay_count;
-    weft_stay *stay; /* [stay_count] by view, then by stay */
-    int untaken;     /* planned shots that were not taken */
-    int *order;      /* shots taken, by stay: what weft_stay.shot points into */
+    int viewpoint_count;
+    weft_viewpoint *viewpoint; /* [viewpoint_count] by view, then by viewpoint */
+    int untaken;               /* planned shots that were not taken */
+    int *order;                /* shots taken, by viewpoint: what weft_viewpoint.shot points into */
 } weft_survey;
 
 /* The caller frees with weft_survey_free. Errors: WEFT_BAD_INPUT for a session without a photograph; WEFT_SYSTEM. */

@@ -169,50 +169,49 @@ void weft_photographs_mask_dark(const float *texel, float darkest, size_t count,
     }
 }
 
-double weft_photographs_variance(const weft_hand *hand, const weft_photographs_photograph *photograph, double contrast,
-                                 double pitch_mm)
+double weft_photographs_variance(const weft_photograph_set *set, const weft_photographs_photograph *photograph,
+                                 double contrast, double pitch_mm)
 {
     weft_vec3 lamp = weft_unit(photograph->lamp.position_mm);
     double slope_squared = (1 - lamp.z * lamp.z) / (lamp.z * lamp.z);
     double turn = weft_rad_of_deg(photograph->lamp.uncertainty_deg), turn_squared = turn * turn;
-    double mm_per_px = weft_length(photograph->pose.translation) / hand->lens.camera.fx;
+    double mm_per_px = weft_length(photograph->pose.translation) / set->lens.camera.fx;
     double blur = 12 * fmax(0, photograph->point_spread.constant) * mm_per_px * mm_per_px;
     double lost = contrast * blur / (blur + pitch_mm * pitch_mm);
     return shared_error * shared_error + photograph->lamp.residual * photograph->lamp.residual +
            turn_squared * slope_squared / 2 + turn_squared * turn_squared / 4 + lost * lost;
 }
 
-static double median_contrast(const weft_hand *hand, const int *index, int count, double *scratch)
+static double median_contrast(const weft_photograph_set *set, const int *index, int count, double *scratch)
 {
     for (int i = 0; i < count; i++)
-        scratch[i] = hand->photograph[index[i]].contrast;
+        scratch[i] = set->photograph[index[i]].contrast;
     return weft_quantile(scratch, (size_t)count, 0.5);
 }
 
 /* value [WEFT_IMAGE_FIGURES][count]; weights with mean 1. */
-static void fill_figures(const weft_hand *hand, const int *index, int count, double pitch_mm, double *value)
+static void fill_figures(const weft_photograph_set *set, const int *index, int count, double pitch_mm, double *value)
 {
-    double contrast = median_contrast(hand, index, count, value), sum = 0;
+    double contrast = median_contrast(set, index, count, value), sum = 0;
     double *weight = value + WEFT_IMAGE_WEIGHT * count;
     for (int i = 0; i < count; i++) {
-        const weft_photographs_photograph *p = &hand->photograph[index[i]];
-        sum += weight[i] = 1 / weft_photographs_variance(hand, p, contrast, pitch_mm);
+        const weft_photographs_photograph *p = &set->photograph[index[i]];
+        sum += weight[i] = 1 / weft_photographs_variance(set, p, contrast, pitch_mm);
         value[WEFT_IMAGE_VIEW_ERROR * count + i] = p->view_uncertainty_deg;
         value[WEFT_IMAGE_LIGHT_ERROR * count + i] = p->lamp.uncertainty_deg;
-        value[WEFT_IMAGE_VALUE_ERROR * count + i] =
-            hypot(hypot(shared_error, p->lamp.residual), hand->lamps.dark_error);
+        value[WEFT_IMAGE_VALUE_ERROR * count + i] = hypot(hypot(shared_error, p->lamp.residual), set->lamps.dark_error);
     }
     for (int i = 0; i < count; i++)
         weight[i] *= count / sum;
 }
 
-weft_code weft_photographs_put_figures(const weft_hand *hand, const int *index, int count, double pitch_mm,
+weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int *index, int count, double pitch_mm,
                                        weft_dataset_writer *writer, weft_error *error)
 {
     double *value = malloc((size_t)(WEFT_IMAGE_FIGURES * count) * sizeof *value);
     if (!value)
         return weft_fail_memory(error, "figures of images", (size_t)(WEFT_IMAGE_FIGURES * count) * sizeof *value);
-    fill_figures(hand, index, count, pitch_mm, value);
+    fill_figures(set, index, count, pitch_mm, value);
     weft_code code = WEFT_OK;
     for (int figure = 0; code == WEFT_OK && figure < WEFT_IMAGE_FIGURES; figure++)
         code = weft_dataset_writer_put_figure(writer, (weft_image_figure)figure, value + figure * count, error);
@@ -223,40 +222,40 @@ weft_code weft_photographs_put_figures(const weft_hand *hand, const int *index, 
 /* ---- What the user should know ---- */
 
 /* Balls and pin have true sizes, the sheet has what --opening says: where they contradict the paper, one is wrong. */
-static weft_code note_misfits(weft_hand *hand, weft_error *error)
+static weft_code note_misfits(weft_photograph_set *set, weft_error *error)
 {
     const double most = 3;
-    if (hand->lamps.ball_misfit > most)
-        WEFT_TRY(weft_lines_add(&hand->notes, error,
+    if (set->lamps.ball_misfit > most)
+        WEFT_TRY(weft_lines_add(&set->notes, error,
                                 "the highlights on the balls lie %.0f standard errors off, median: is the opening, or "
                                 "the diameter of the balls, what was said?",
-                                hand->lamps.ball_misfit));
-    if (hand->lamps.pin_misfit > most)
-        return weft_lines_add(&hand->notes, error,
+                                set->lamps.ball_misfit));
+    if (set->lamps.pin_misfit > most)
+        return weft_lines_add(&set->notes, error,
                               "the shadows of the pin lie %.0f standard errors off, median: is the opening, or the "
                               "height of the pin, what was said?",
-                              hand->lamps.pin_misfit);
+                              set->lamps.pin_misfit);
     return WEFT_OK;
 }
 
 /* Paper and ink leave the middle of the tone curve open. */
-static weft_code note_tone(weft_hand *hand, weft_error *error)
+static weft_code note_tone(weft_photograph_set *set, weft_error *error)
 {
     const double most = 0.05;
-    if (!(hand->lamps.dark_error > most))
+    if (!(set->lamps.dark_error > most))
         return WEFT_OK;
     return weft_lines_add(
-        &hand->notes, error,
+        &set->notes, error,
         "dark cloth, a tenth as bright as the paper, may be off by %.0f %% (a standard error), bright "
         "cloth by less: the tone curve is known no better. Next time take four photographs twice, the "
         "second two stops darker, or use raw files",
-        100 * hand->lamps.dark_error);
+        100 * set->lamps.dark_error);
 }
 
-weft_code weft_photographs_note(weft_hand *hand, weft_error *error)
+weft_code weft_photographs_note(weft_photograph_set *set, weft_error *error)
 {
-    WEFT_TRY(note_misfits(hand, error));
-    return note_tone(hand, error);
+    WEFT_TRY(note_misfits(set, error));
+    return note_tone(set, error);
 }
 
 /* ---- Whether they differ ---- */
@@ -267,12 +266,12 @@ static bool is_near(weft_vec3 a, weft_vec3 b)
     return weft_dot(weft_unit(a), weft_unit(b)) > cos(near_rad);
 }
 
-weft_code weft_photographs_check_variety(const char *folder, const weft_hand *hand, weft_error *error)
+weft_code weft_photographs_check_variety(const char *folder, const weft_photograph_set *set, weft_error *error)
 {
     const weft_photographs_photograph *first = NULL;
     int used = 0;
-    for (int i = 0; i < hand->count; i++) {
-        const weft_photographs_photograph *p = &hand->photograph[i];
+    for (int i = 0; i < set->count; i++) {
+        const weft_photographs_photograph *p = &set->photograph[i];
         if (!weft_photographs_used(p))
             continue;
         used++;

@@ -33,21 +33,21 @@ void weft_photographs_mask_dark(const float *texel, float darkest, size_t count,
  * towards the horizon, theta the angle of the lamp from the normal; c the contrast of the sample, b the standard
  * deviation of its blur on the sheet, p the pitch of texels: a texel takes the share 12 b^2 / (12 b^2 + p^2) of its
  * light from beside it. Pure. */
-double weft_photographs_variance(const weft_hand *hand, const weft_photographs_photograph *photograph, double contrast,
-                                 double pitch_mm);
+double weft_photographs_variance(const weft_photograph_set *set, const weft_photographs_photograph *photograph,
+                                 double contrast, double pitch_mm);
 
 /* Puts the figures of the images: image i is photograph index[i]. Weights are 1 / variance with mean 1, the contrast
  * being the median over the photographs; the error of the values is that of s0, e and the tone curve
  * (lamps.dark_error). Errors: those of weft_dataset_writer_put_figure. */
-weft_code weft_photographs_put_figures(const weft_hand *hand, const int *index, int count, double pitch_mm,
+weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int *index, int count, double pitch_mm,
                                        weft_dataset_writer *writer, weft_error *error);
 
-/* Adds a line to the notes of `hand` where balls or pin contradict the paper, and where the tone curve leaves dark
+/* Adds a line to the notes of `set` where balls or pin contradict the paper, and where the tone curve leaves dark
  * cloth open. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_photographs_note(weft_hand *hand, weft_error *error);
+weft_code weft_photographs_note(weft_photograph_set *set, weft_error *error);
 
 /* Refuses photographs that all show the cloth from one side under one light, within 3 degrees. Errors: WEFT_BAD_INPUT
  * naming the folder. Pure. */
-weft_code weft_photographs_check_variety(const char *folder, const weft_hand *hand, weft_error *error);
+weft_code weft_photographs_check_variety(const char *folder, const weft_photograph_set *set, weft_error *error);
 
 #endif

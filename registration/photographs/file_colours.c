@@ -38,21 +38,21 @@ static bool says_the_same(const weft_photographs_photograph *p, const weft_photo
     return weft_photographs_used(q) && strcmp(p->colours, q->colours) == 0;
 }
 
-weft_code weft_photographs_note_colours(weft_hand *hand, weft_error *error)
+weft_code weft_photographs_note_colours(weft_photograph_set *set, weft_error *error)
 {
     int used = 0;
-    for (int i = 0; i < hand->count; i++)
-        used += weft_photographs_used(&hand->photograph[i]);
-    for (int i = 0; i < hand->count; i++) {
-        const weft_photographs_photograph *p = &hand->photograph[i];
+    for (int i = 0; i < set->count; i++)
+        used += weft_photographs_used(&set->photograph[i]);
+    for (int i = 0; i < set->count; i++) {
+        const weft_photographs_photograph *p = &set->photograph[i];
         int before = 0, same = 0;
-        for (int k = 0; k < hand->count; k++) {
-            same += says_the_same(p, &hand->photograph[k]);
-            before += k < i && says_the_same(p, &hand->photograph[k]);
+        for (int k = 0; k < set->count; k++) {
+            same += says_the_same(p, &set->photograph[k]);
+            before += k < i && says_the_same(p, &set->photograph[k]);
         }
         if (!weft_photographs_used(p) || !p->colours[0] || before > 0)
             continue;
-        WEFT_TRY(weft_lines_add(&hand->notes, error, "colours of '%s': %s; %s (%d of %d photographs)", p->name,
+        WEFT_TRY(weft_lines_add(&set->notes, error, "colours of '%s': %s; %s (%d of %d photographs)", p->name,
                                 p->colours, p->file_colour.terms ? "turned into sRGB" : "not turned into sRGB", same,
                                 used));
     }

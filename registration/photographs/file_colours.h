@@ -9,6 +9,6 @@
 void weft_photographs_read_colours(const char *path, weft_photographs_photograph *photograph);
 
 /* A line of the notes for all photographs in use that say the same: turned into sRGB, or not understood. */
-weft_code weft_photographs_note_colours(weft_hand *hand, weft_error *error);
+weft_code weft_photographs_note_colours(weft_photograph_set *set, weft_error *error);
 
 #endif

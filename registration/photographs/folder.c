@@ -22,26 +22,26 @@ static void read_exif(const char *folder, weft_photographs_photograph *photograp
     free(path);
 }
 
-const weft_exif *weft_photographs_common_size(const weft_hand *hand)
+const weft_exif *weft_photographs_common_size(const weft_photograph_set *set)
 {
     const weft_exif *best = NULL;
     int most = 0;
-    for (int i = 0; i < hand->count; i++) {
-        const weft_exif *one = &hand->photograph[i].exif;
+    for (int i = 0; i < set->count; i++) {
+        const weft_exif *one = &set->photograph[i].exif;
         int same = 0;
-        for (int k = 0; k < hand->count && weft_photographs_used(&hand->photograph[i]); k++)
-            same += weft_photographs_used(&hand->photograph[k]) && hand->photograph[k].exif.width == one->width &&
-                    hand->photograph[k].exif.height == one->height;
+        for (int k = 0; k < set->count && weft_photographs_used(&set->photograph[i]); k++)
+            same += weft_photographs_used(&set->photograph[k]) && set->photograph[k].exif.width == one->width &&
+                    set->photograph[k].exif.height == one->height;
         if (same > most)
             most = same, best = one;
     }
     return best;
 }
 
-static void leave_out_other_sizes(weft_hand *hand, const weft_exif *common)
+static void leave_out_other_sizes(weft_photograph_set *set, const weft_exif *common)
 {
-    for (int i = 0; i < hand->count; i++) {
-        weft_photographs_photograph *p = &hand->photograph[i];
+    for (int i = 0; i < set->count; i++) {
+        weft_photographs_photograph *p = &set->photograph[i];
         if (!weft_photographs_used(p) || (p->exif.width == common->width && p->exif.height == common->height))
             continue;
         bool turned = p->exif.width == common->height && p->exif.height == common->width;
@@ -51,7 +51,8 @@ static void leave_out_other_sizes(weft_hand *hand, const weft_exif *common)
     }
 }
 
-static weft_code name_photographs(const char *folder, const weft_lines *names, weft_hand *hand, weft_error *error)
+static weft_code name_photographs(const char *folder, const weft_lines *names, weft_photograph_set *set,
+                                  weft_error *error)
 {
     if (names->count == 0)
         return weft_images_missing(folder, error);
@@ -60,30 +61,30 @@ static weft_code name_photographs(const char *folder, const weft_lines *names, w
                          "'%s' holds %d photograph%s, %d are needed and 20 do better: take more, each with the camera "
                          "and the lamp elsewhere",
                          folder, names->count, names->count == 1 ? "" : "s", WEFT_PHOTOGRAPHS_FEWEST);
-    if (!(hand->photograph = calloc((size_t)names->count, sizeof *hand->photograph)))
-        return weft_fail_memory(error, "photographs", (size_t)names->count * sizeof *hand->photograph);
-    for (int i = 0; i < names->count; i++, hand->count++) {
-        if (!(hand->photograph[i].name = strdup(names->line[i])))
+    if (!(set->photograph = calloc((size_t)names->count, sizeof *set->photograph)))
+        return weft_fail_memory(error, "photographs", (size_t)names->count * sizeof *set->photograph);
+    for (int i = 0; i < names->count; i++, set->count++) {
+        if (!(set->photograph[i].name = strdup(names->line[i])))
             return weft_fail_memory(error, names->line[i], strlen(names->line[i]));
     }
     return WEFT_OK;
 }
 
-weft_code weft_photographs_list(const char *folder, weft_hand *hand, weft_error *error)
+weft_code weft_photographs_list(const char *folder, weft_photograph_set *set, weft_error *error)
 {
     weft_lines names;
     WEFT_TRY(weft_images_list(folder, &names, error));
-    weft_code code = name_photographs(folder, &names, hand, error);
+    weft_code code = name_photographs(folder, &names, set, error);
     weft_lines_free(&names);
     WEFT_TRY(code);
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < hand->count; i++)
-        read_exif(folder, &hand->photograph[i]);
-    const weft_exif *common = weft_photographs_common_size(hand);
+    for (int i = 0; i < set->count; i++)
+        read_exif(folder, &set->photograph[i]);
+    const weft_exif *common = weft_photographs_common_size(set);
     if (!common)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "none of the %d images in '%s' can be read: %s; save them as JPEG, TIFF or DNG", hand->count,
-                         folder, hand->photograph[0].remark);
-    leave_out_other_sizes(hand, common);
+                         "none of the %d images in '%s' can be read: %s; save them as JPEG, TIFF or DNG", set->count,
+                         folder, set->photograph[0].remark);
+    leave_out_other_sizes(set, common);
     return WEFT_OK;
 }

@@ -187,7 +187,7 @@ static weft_code share_pose(weft_photographs_photograph *photograph, const int *
     size_t limit = (size_t)count * WEFT_PLATE_CORNERS;
     double(*corner)[2] = malloc(2 * limit * sizeof *corner);
     if (!corner)
-        return weft_fail_memory(error, "corners of a stay", 2 * limit * sizeof *corner);
+        return weft_fail_memory(error, "corners of a viewpoint", 2 * limit * sizeof *corner);
     double(*plate)[2] = corner, (*seen)[2] = corner + limit;
     weft_corner_view all = {0, (const double(*)[2])plate, (const double(*)[2])seen};
     for (int i = 0; i < count; i++) {
@@ -212,7 +212,7 @@ static weft_code share_poses(weft_photographs_photograph *photograph, int count,
     double limit = tripod_share * fmax(camera->width, camera->height);
     int *index = malloc(((size_t)count + 1) * sizeof *index);
     bool *done = calloc((size_t)count + 1, sizeof *done);
-    weft_code code = index && done ? WEFT_OK : weft_fail_memory(error, "stays", (size_t)count * 5);
+    weft_code code = index && done ? WEFT_OK : weft_fail_memory(error, "viewpoints", (size_t)count * 5);
     for (int first = 0; code == WEFT_OK && first < count; first++) {
         int together = 0;
         for (int i = first; i < count && weft_photographs_used(&photograph[first]) && !done[first]; i++) {

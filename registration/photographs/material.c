@@ -4,9 +4,9 @@
 #include "btf/dataset/dataset.h"
 #include "registration/lamp/read.h"
 #include "registration/photographs/certainty.h"
+#include "registration/photographs/exposure_pairs.h"
 #include "registration/photographs/hidden.h"
 #include "registration/photographs/thumbnail.h"
-#include "registration/photographs/twin.h"
 #include "registration/resample/resample.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ typedef struct work {
     const char *folder;
     const weft_photographs_settings *settings;
     const weft_progress *progress;
-    weft_hand *hand;
+    weft_photograph_set *set;
     weft_dataset_writer *writer;
     float *inverse_vignetting;
     int *photograph; /* [used_count] index of every image of the dataset */
@@ -26,12 +26,12 @@ typedef struct work {
 
 static weft_code index_images(work *w, int *count, weft_error *error)
 {
-    w->photograph = malloc((size_t)w->hand->count * sizeof *w->photograph);
+    w->photograph = malloc((size_t)w->set->count * sizeof *w->photograph);
     if (!w->photograph)
-        return weft_fail_memory(error, "images", (size_t)w->hand->count * sizeof *w->photograph);
+        return weft_fail_memory(error, "images", (size_t)w->set->count * sizeof *w->photograph);
     *count = 0;
-    for (int i = 0; i < w->hand->count; i++) {
-        if (weft_photographs_used(&w->hand->photograph[i]))
+    for (int i = 0; i < w->set->count; i++) {
+        if (weft_photographs_used(&w->set->photograph[i]))
             w->photograph[(*count)++] = i;
     }
     return WEFT_OK;
@@ -49,7 +49,7 @@ static weft_code describe(const work *w, int count, weft_dataset_layout *layout,
     WEFT_TRY(weft_dataset_layout_allocate(layout, error));
     layout->view_count = 0;
     for (int image = 0; image < count; image++) {
-        const weft_photographs_photograph *p = &w->hand->photograph[w->photograph[image]];
+        const weft_photographs_photograph *p = &w->set->photograph[w->photograph[image]];
         weft_vec3 eye = weft_pose_camera_position(&p->pose);
         int view = 0;
         while (view < layout->view_count && weft_length(weft_subtract(layout->view[view], eye)) > 0)
@@ -64,7 +64,7 @@ static weft_code describe(const work *w, int count, weft_dataset_layout *layout,
 
 static weft_code invert_vignetting(work *w, weft_error *error)
 {
-    const weft_camera *camera = &w->hand->lens.camera;
+    const weft_camera *camera = &w->set->lens.camera;
     size_t pixels = (size_t)camera->width * (size_t)camera->height;
     w->inverse_vignetting = malloc(pixels * sizeof *w->inverse_vignetting);
     if (!w->inverse_vignetting)
@@ -138,7 +138,7 @@ static weft_code resample(const work *w, weft_photographs_photograph *p, const w
                           weft_error *error)
 {
     weft_resampler resampler;
-    weft_resampling resampling = {.camera = &w->hand->lens.camera,
+    weft_resampling resampling = {.camera = &w->set->lens.camera,
                                   .inverse_vignetting = w->inverse_vignetting,
                                   .homography = p->homography,
                                   .opening_mm = w->settings->target.opening_mm,
@@ -148,7 +148,7 @@ static weft_code resample(const work *w, weft_photographs_photograph *p, const w
     weft_resampler_apply(&resampler, values->samples, 0, WEFT_PHOTOGRAPHS_FULL_SCALE, t->light, t->mask);
     weft_resampler_free(&resampler);
     weft_photographs_mask_dark(t->light, values->dark * WEFT_PHOTOGRAPHS_FULL_SCALE, t->count, t->mask, p);
-    normalise(w->settings, &w->hand->lamps.flash, p, t->light, t->value, t->mask);
+    normalise(w->settings, &w->set->lamps.flash, p, t->light, t->value, t->mask);
     return WEFT_OK;
 }
 
@@ -158,7 +158,7 @@ static weft_code read_texels(const work *w, weft_photographs_photograph *p, texe
     char *path = NULL;
     if (asprintf(&path, "%s/%s", w->folder, p->name) < 0)
         return weft_fail_memory(error, p->name, 0);
-    weft_code code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone,
+    weft_code code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->set->tone,
                                             weft_file_range_of(&p->exif, w->settings->clipped_at), &values, error);
     if (code == WEFT_OK)
         code = resample(w, p, &values, t, error);
@@ -167,24 +167,24 @@ static weft_code read_texels(const work *w, weft_photographs_photograph *p, texe
     return code;
 }
 
-/* What photograph number `bright` has clipped is taken from its darker twins. */
-static weft_code fill_from_twins(const work *w, int bright, texels *t, weft_error *error)
+/* What photograph number `bright` has clipped is taken from its darker darker ones. */
+static weft_code fill_from_darker(const work *w, int bright, texels *t, weft_error *error)
 {
-    weft_hand *hand = w->hand;
+    weft_photograph_set *set = w->set;
     texels dark;
     weft_code code = WEFT_OK;
-    int twin = weft_photographs_darker_twin(hand, bright);
-    if (twin < 0)
+    int darker = weft_photographs_darker_of_pair(set, bright);
+    if (darker < 0)
         return WEFT_OK;
-    WEFT_TRY(texels_allocate(w->settings, hand->photograph[twin].name, &dark, error));
-    for (; twin >= 0 && code == WEFT_OK; twin = weft_photographs_darker_twin(hand, twin)) {
-        weft_photographs_photograph as_taken = hand->photograph[twin];
-        if (!as_taken.is_twin)
+    WEFT_TRY(texels_allocate(w->settings, set->photograph[darker].name, &dark, error));
+    for (; darker >= 0 && code == WEFT_OK; darker = weft_photographs_darker_of_pair(set, darker)) {
+        weft_photographs_photograph as_taken = set->photograph[darker];
+        if (!as_taken.is_darker_of_pair)
             continue; /* it has another fault */
         memset(dark.mask, 0, dark.count);
         code = read_texels(w, &as_taken, &dark, error);
         if (code == WEFT_OK)
-            hand->photograph[bright].clipped_texels -=
+            set->photograph[bright].clipped_texels -=
                 weft_photographs_fill_saturated(dark.value, dark.mask, dark.count, t->value, t->mask);
     }
     texels_free(&dark);
@@ -194,12 +194,12 @@ static weft_code fill_from_twins(const work *w, int bright, texels *t, weft_erro
 static weft_code put_image(const work *w, int image, weft_error *error)
 {
     int index = w->photograph[image];
-    weft_photographs_photograph *p = &w->hand->photograph[index];
+    weft_photographs_photograph *p = &w->set->photograph[index];
     texels t;
     WEFT_TRY(texels_allocate(w->settings, p->name, &t, error));
     weft_code code = read_texels(w, p, &t, error);
     if (code == WEFT_OK)
-        code = fill_from_twins(w, index, &t, error);
+        code = fill_from_darker(w, index, &t, error);
     if (code == WEFT_OK) {
         weft_photographs_mask_hidden(w->settings, p->lamp.position_mm, weft_pose_camera_position(&p->pose), t.mask,
                                      &p->hidden_texels);
@@ -246,35 +246,35 @@ static json_t *pack_photograph(const weft_photographs_photograph *p)
 }
 
 /* What told the tone curve, and how well. */
-static json_t *pack_knowledge_of_tone(const weft_hand *hand)
+static json_t *pack_knowledge_of_tone(const weft_photograph_set *set)
 {
     json_t *pairs = json_array();
-    for (int i = 0; i < hand->pair_count; i++) {
-        const char *bright = hand->photograph[hand->pair[i].bright].name;
-        const char *dark = hand->photograph[hand->pair[i].dark].name;
+    for (int i = 0; i < set->pair_count; i++) {
+        const char *bright = set->photograph[set->pair[i].bright].name;
+        const char *dark = set->photograph[set->pair[i].dark].name;
         weft_json_append(&pairs,
                          json_pack("[oo]", weft_json_text(bright, strlen(bright)), weft_json_text(dark, strlen(dark))));
     }
-    return json_pack("{sb so sf}", "found", hand->tone_found, "exposure_pairs", pairs, "standard_error_of_a_tenth",
-                     hand->lamps.dark_error);
+    return json_pack("{sb so sf}", "found", set->tone_found, "exposure_pairs", pairs, "standard_error_of_a_tenth",
+                     set->lamps.dark_error);
 }
 
 static char *provenance(const work *w)
 {
-    const weft_camera *c = &w->hand->lens.camera;
-    const weft_lens_errors *e = &w->hand->lens.errors;
+    const weft_camera *c = &w->set->lens.camera;
+    const weft_lens_errors *e = &w->set->lens.errors;
     json_t *photographs = json_array(), *tone = json_array();
     for (int i = 0; i <= WEFT_TONE_STEPS; i += WEFT_TONE_STEPS / 64)
-        weft_json_append(&tone, json_real((double)w->hand->tone.linear[i]));
-    for (int i = 0; i < w->hand->count; i++)
-        weft_json_append(&photographs, pack_photograph(&w->hand->photograph[i]));
+        weft_json_append(&tone, json_real((double)w->set->tone.linear[i]));
+    for (int i = 0; i < w->set->count; i++)
+        weft_json_append(&photographs, pack_photograph(&w->set->photograph[i]));
     json_t *root = json_pack("{ss s{si si sf sf sf sf sf sf s[fff] s{sf sf sf}} sf sf so so}", "program",
                              "weft photographs " WEFT_VERSION, "lens", "width", c->width, "height", c->height, "fx",
                              c->fx, "fy", c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting",
                              c->vignetting[0], c->vignetting[1], c->vignetting[2], "standard_error", "f", e->focal_px,
                              "k1", e->k1, "k2", e->k2, "opening_mm", w->settings->target.opening_mm, "ink_over_paper",
-                             w->hand->lamps.ink, "tone", tone, "photographs", photographs);
-    weft_json_put(&root, "tone_curve", pack_knowledge_of_tone(w->hand));
+                             w->set->lamps.ink, "tone", tone, "photographs", photographs);
+    weft_json_put(&root, "tone_curve", pack_knowledge_of_tone(w->set));
     if (w->settings->colour)
         weft_json_put(&root, "colour", weft_colour_pack(w->settings->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
@@ -288,7 +288,7 @@ static weft_code write(work *w, const char *output, int count, weft_dataset_layo
     WEFT_TRY(invert_vignetting(w, error));
     WEFT_TRY(weft_dataset_writer_create(output, layout, &w->writer, error));
     WEFT_TRY(put_all(w, count, error));
-    WEFT_TRY(weft_photographs_put_figures(w->hand, w->photograph, count, layout->texel_pitch_mm, w->writer, error));
+    WEFT_TRY(weft_photographs_put_figures(w->set, w->photograph, count, layout->texel_pitch_mm, w->writer, error));
     char *text = provenance(w);
     if (!text)
         return weft_fail_memory(error, "provenance", 0);
@@ -301,9 +301,9 @@ static weft_code write(work *w, const char *output, int count, weft_dataset_layo
 
 weft_code weft_photographs_write_dataset(const char *folder, const char *output,
                                          const weft_photographs_settings *settings, const weft_progress *progress,
-                                         weft_hand *hand, weft_error *error)
+                                         weft_photograph_set *set, weft_error *error)
 {
-    work w = {.folder = folder, .settings = settings, .progress = progress, .hand = hand};
+    work w = {.folder = folder, .settings = settings, .progress = progress, .set = set};
     weft_dataset_layout layout = {0};
     int count = 0;
     weft_code code = index_images(&w, &count, error);

@@ -8,6 +8,6 @@
  * writes the dataset. Errors: WEFT_BAD_INPUT where a file has gone since; WEFT_SYSTEM. Uses OpenMP. */
 weft_code weft_photographs_write_dataset(const char *folder, const char *output,
                                          const weft_photographs_settings *settings, const weft_progress *progress,
-                                         weft_hand *hand, weft_error *error);
+                                         weft_photograph_set *set, weft_error *error);
 
 #endif

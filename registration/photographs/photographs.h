@@ -23,7 +23,7 @@ typedef struct weft_photographs_settings {
 } weft_photographs_settings;
 
 /* What came of it. Freed with weft_photographs_free. */
-typedef struct weft_hand {
+typedef struct weft_photograph_set {
     int count;
     weft_photographs_photograph *photograph; /* [count], by name */
     int used_count;
@@ -35,18 +35,18 @@ typedef struct weft_hand {
     weft_exposure_pair *pair; /* [pair_count] of photographs that differ in exposure alone */
     weft_lines notes;         /* what the user should know, a line each */
     double seconds;
-} weft_hand;
+} weft_photograph_set;
 
 /* An opening of 50 mm, 256 x 256 texels, balls of 20 mm, a pin of 30 mm, a lamp that moves freely, clipped from
  * 250/255. */
 weft_photographs_settings weft_photographs_defaults(void);
 
 /* Registers the image files in `folder` into the dataset `output` (near lights and cameras, reflectance times cosine).
- * A photograph that cannot be used is left out, with the reason in its remark. The caller frees `hand` with
+ * A photograph that cannot be used is left out, with the reason in its remark. The caller frees `set` with
  * weft_photographs_free on success. Errors: WEFT_BAD_INPUT where nothing can be made of the folder, saying what was
  * found and what is missing; WEFT_SYSTEM. Uses OpenMP; memory: two photographs a thread. */
 weft_code weft_photographs_register(const char *folder, const char *output, const weft_photographs_settings *settings,
-                                    const weft_progress *progress, weft_hand *hand, weft_error *error);
-void weft_photographs_free(weft_hand *hand);
+                                    const weft_progress *progress, weft_photograph_set *set, weft_error *error);
+void weft_photographs_free(weft_photograph_set *set);
 
 #endif

@@ -9,33 +9,32 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-void weft_photographs_describe_tone(const weft_hand *hand, char words[WEFT_PHOTOGRAPHS_WORDS_SIZE])
+void weft_photographs_describe_tone(const weft_photograph_set *set, char words[WEFT_PHOTOGRAPHS_TEXT_SIZE])
 {
-    if (!hand->tone_found) {
-        snprintf(words, WEFT_PHOTOGRAPHS_WORDS_SIZE, "the files are linear");
+    if (!set->tone_found) {
+        snprintf(words, WEFT_PHOTOGRAPHS_TEXT_SIZE, "the files are linear");
         return;
     }
-    int length = snprintf(words, WEFT_PHOTOGRAPHS_WORDS_SIZE, "found in the light of paper and ink");
-    if (hand->pair_count > 0)
-        length += snprintf(words + length, WEFT_PHOTOGRAPHS_WORDS_SIZE - (size_t)length,
-                           ", and in %d pairs of photographs that differ in exposure alone", hand->pair_count);
-    snprintf(words + length, WEFT_PHOTOGRAPHS_WORDS_SIZE - (size_t)length,
-             "; the light of a tenth of white paper is known to %.1f %% (standard error)",
-             100 * hand->lamps.dark_error);
+    int length = snprintf(words, WEFT_PHOTOGRAPHS_TEXT_SIZE, "found in the light of paper and ink");
+    if (set->pair_count > 0)
+        length += snprintf(words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
+                           ", and in %d pairs of photographs that differ in exposure alone", set->pair_count);
+    snprintf(words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
+             "; the light of a tenth of white paper is known to %.1f %% (standard error)", 100 * set->lamps.dark_error);
 }
 
-void weft_photographs_describe_masks(const weft_hand *hand, const weft_photographs_settings *settings,
-                                     char words[WEFT_PHOTOGRAPHS_WORDS_SIZE])
+void weft_photographs_describe_masks(const weft_photograph_set *set, const weft_photographs_settings *settings,
+                                     char words[WEFT_PHOTOGRAPHS_TEXT_SIZE])
 {
     long clipped = 0, dark = 0, hidden = 0;
-    for (int i = 0; i < hand->count; i++) {
-        clipped += hand->photograph[i].clipped_texels;
-        dark += hand->photograph[i].dark_texels;
-        hidden += hand->photograph[i].hidden_texels;
+    for (int i = 0; i < set->count; i++) {
+        clipped += set->photograph[i].clipped_texels;
+        dark += set->photograph[i].dark_texels;
+        hidden += set->photograph[i].hidden_texels;
     }
-    snprintf(words, WEFT_PHOTOGRAPHS_WORDS_SIZE,
+    snprintf(words, WEFT_PHOTOGRAPHS_TEXT_SIZE,
              "%ld of %ld samples are clipped, %ld are too dark to be read, %ld lie behind the pin or a ball", clipped,
-             (long)settings->width * settings->height * hand->used_count, dark, hidden);
+             (long)settings->width * settings->height * set->used_count, dark, hidden);
 }
 
 static weft_vec3 view_of(const weft_photographs_photograph *p)
@@ -43,13 +42,13 @@ static weft_vec3 view_of(const weft_photographs_photograph *p)
     return weft_pose_camera_position(&p->pose);
 }
 
-static double median_lamp_error(const weft_hand *hand)
+static double median_lamp_error(const weft_photograph_set *set)
 {
-    double *value = malloc(((size_t)hand->count + 1) * sizeof *value), median = 0;
+    double *value = malloc(((size_t)set->count + 1) * sizeof *value), median = 0;
     size_t count = 0;
-    for (int i = 0; value && i < hand->count; i++) {
-        if (weft_photographs_used(&hand->photograph[i]))
-            value[count++] = hand->photograph[i].lamp.uncertainty_deg;
+    for (int i = 0; value && i < set->count; i++) {
+        if (weft_photographs_used(&set->photograph[i]))
+            value[count++] = set->photograph[i].lamp.uncertainty_deg;
     }
     if (value)
         median = weft_quantile(value, count, 0.5);
@@ -57,14 +56,14 @@ static double median_lamp_error(const weft_hand *hand)
     return median;
 }
 
-static void write_tiles(weft_page *page, const weft_hand *hand)
+static void write_tiles(weft_page *page, const weft_photograph_set *set)
 {
     fputs("<div class=\"tiles\">\n", page->html);
-    weft_page_tile(page, "photographs in the dataset", "%d of %d", hand->used_count, hand->count);
-    weft_page_tile(page, "pixels: corners of markers about the lens, RMS", "%.2f", hand->lens.rms_px);
-    weft_page_tile(page, "direction of the lamp, standard error, median", "%.2f\xc2\xb0", median_lamp_error(hand));
-    weft_page_tile(page, "distinct views", "%d", hand->lens.distinct_views);
-    weft_page_tile(page, "time taken", "%.0f s", hand->seconds);
+    weft_page_tile(page, "photographs in the dataset", "%d of %d", set->used_count, set->count);
+    weft_page_tile(page, "pixels: corners of markers about the lens, RMS", "%.2f", set->lens.rms_px);
+    weft_page_tile(page, "direction of the lamp, standard error, median", "%.2f\xc2\xb0", median_lamp_error(set));
+    weft_page_tile(page, "distinct views", "%d", set->lens.distinct_views);
+    weft_page_tile(page, "time taken", "%.0f s", set->seconds);
     fputs("</div>\n", page->html);
 }
 
@@ -97,20 +96,20 @@ static void write_lens(weft_page *page, const weft_lens_estimate *lens)
     weft_page_fact(page, "corners of markers about the lens, RMS", "%.2f pixels", lens->rms_px);
 }
 
-static void write_camera(weft_page *page, const weft_photographs_settings *settings, const weft_hand *hand)
+static void write_camera(weft_page *page, const weft_photographs_settings *settings, const weft_photograph_set *set)
 {
-    char words[WEFT_PHOTOGRAPHS_WORDS_SIZE];
-    const weft_camera *c = &hand->lens.camera;
+    char words[WEFT_PHOTOGRAPHS_TEXT_SIZE];
+    const weft_camera *c = &set->lens.camera;
     double corner = hypot(c->width, c->height) / 2 / c->fx, r2 = corner * corner;
     fputs("<h2>Camera</h2>\n<table>\n", page->html);
-    weft_page_fact(page, "lens", "%s", knowledge_name(hand->lens.knowledge));
-    write_lens(page, &hand->lens);
+    weft_page_fact(page, "lens", "%s", knowledge_name(set->lens.knowledge));
+    write_lens(page, &set->lens);
     weft_page_fact(page, "light in the corner of the picture", "%.0f %% of that in the middle",
                    100 * (1 + r2 * (c->vignetting[0] + r2 * (c->vignetting[1] + r2 * c->vignetting[2]))));
-    weft_page_fact(page, "ink against paper", "%.3f", hand->lamps.ink);
-    weft_photographs_describe_tone(hand, words);
+    weft_page_fact(page, "ink against paper", "%.3f", set->lamps.ink);
+    weft_photographs_describe_tone(set, words);
     weft_page_fact(page, "tone curve", "%s", words);
-    weft_photographs_describe_masks(hand, settings, words);
+    weft_photographs_describe_masks(set, settings, words);
     weft_page_fact(page, "masked", "%s", words);
     fputs("</table>\n", page->html);
 }
@@ -130,7 +129,7 @@ static void draw_direction(weft_page *page, const weft_photographs_photograph *p
 }
 
 /* The hemisphere over the sample, seen from above, about (x, MIDDLE). */
-static void draw_hemisphere(weft_page *page, const weft_hand *hand, bool lamps, int x)
+static void draw_hemisphere(weft_page *page, const weft_photograph_set *set, bool lamps, int x)
 {
     fprintf(page->html, "<text class=\"title\" x=\"%d\" y=\"20\" text-anchor=\"middle\">%s</text>\n", x,
             lamps ? "Lamps" : "Views");
@@ -138,30 +137,30 @@ static void draw_hemisphere(weft_page *page, const weft_hand *hand, bool lamps, 
         fprintf(page->html,
                 "<circle class=\"ring\" cx=\"%d\" cy=\"%d\" r=\"%d\"/><text x=\"%d\" y=\"%d\">%d\u00b0</text>\n", x,
                 MIDDLE, RADIUS * deg / 90, x + 3, MIDDLE - RADIUS * deg / 90 - 3, deg);
-    for (int i = 0; i < hand->count; i++) {
-        if (weft_photographs_used(&hand->photograph[i]))
-            draw_direction(page, &hand->photograph[i], lamps, x);
+    for (int i = 0; i < set->count; i++) {
+        if (weft_photographs_used(&set->photograph[i]))
+            draw_direction(page, &set->photograph[i], lamps, x);
     }
 }
 
-static void plot_directions(weft_page *page, const weft_hand *hand)
+static void plot_directions(weft_page *page, const weft_photograph_set *set)
 {
     const char *title = "Directions of views and lamps, as seen from above the sample";
     fprintf(page->html, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">\n", CHART_WIDTH,
             CHART_HEIGHT, title);
-    draw_hemisphere(page, hand, false, CHART_WIDTH / 4);
-    draw_hemisphere(page, hand, true, 3 * CHART_WIDTH / 4);
+    draw_hemisphere(page, set, false, CHART_WIDTH / 4);
+    draw_hemisphere(page, set, true, 3 * CHART_WIDTH / 4);
     fputs("</svg>\n", page->html);
 }
 
-static void plot_tone(weft_page *page, const weft_hand *hand)
+static void plot_tone(weft_page *page, const weft_photograph_set *set)
 {
     enum { STEPS = 16 };
     weft_tone_curve srgb = weft_tone_srgb();
     double camera[STEPS + 1][2], standard[STEPS + 1][2];
     for (int i = 0; i <= STEPS; i++) {
         camera[i][0] = standard[i][0] = (double)i / STEPS;
-        camera[i][1] = (double)hand->tone.linear[i * (WEFT_TONE_STEPS / STEPS)];
+        camera[i][1] = (double)set->tone.linear[i * (WEFT_TONE_STEPS / STEPS)];
         standard[i][1] = (double)srgb.linear[i * (WEFT_TONE_STEPS / STEPS)];
     }
     const weft_chart_series series[] = {
@@ -173,19 +172,19 @@ static void plot_tone(weft_page *page, const weft_hand *hand)
 
 /* ---- Photographs ---- */
 
-static void write_left_out(weft_page *page, const weft_hand *hand)
+static void write_left_out(weft_page *page, const weft_photograph_set *set)
 {
-    if (hand->used_count == hand->count)
+    if (set->used_count == set->count)
         return;
     fputs("<h2>Left out</h2>\n<table>\n", page->html);
     weft_page_columns(page, "photograph|:why");
-    for (int i = 0; i < hand->count; i++) {
-        if (weft_photographs_used(&hand->photograph[i]))
+    for (int i = 0; i < set->count; i++) {
+        if (weft_photographs_used(&set->photograph[i]))
             continue;
         fputs("<tr class=\"bad\"><td>", page->html);
-        weft_page_text(page, hand->photograph[i].name);
+        weft_page_text(page, set->photograph[i].name);
         fputs("</td><td class=\"text\">", page->html);
-        weft_page_text(page, hand->photograph[i].remark);
+        weft_page_text(page, set->photograph[i].remark);
         fputs("</td></tr>\n", page->html);
     }
     fputs("</table>\n", page->html);
@@ -205,14 +204,14 @@ static void write_row(weft_page *page, const weft_photographs_photograph *p)
             p->lamp.uncertainty_deg, p->corner_rms_px, p->uncertainty_mm, p->corner_count, 4 * p->marker_count);
 }
 
-static void write_table(weft_page *page, const weft_hand *hand)
+static void write_table(weft_page *page, const weft_photograph_set *set)
 {
     fputs("<h2>All that are used</h2>\n<table class=\"long\">\n", page->html);
     weft_page_columns(page, "photograph|view: theta, phi, degrees|camera, mm|lamp: theta, phi, degrees|lamp, mm|lamp: "
                             "standard error, degrees|corners, pixels RMS|warp: standard error, mm|corners used");
-    for (int i = 0; i < hand->count; i++) {
-        if (weft_photographs_used(&hand->photograph[i]))
-            write_row(page, &hand->photograph[i]);
+    for (int i = 0; i < set->count; i++) {
+        if (weft_photographs_used(&set->photograph[i]))
+            write_row(page, &set->photograph[i]);
     }
     fputs("</table>\n", page->html);
 }
@@ -226,14 +225,14 @@ static weft_code write_thumbnail(const char *folder, int index, const char *what
     return weft_image_write(path, image, NULL, error);
 }
 
-static weft_code write_gallery(weft_page *page, const weft_hand *hand, weft_error *error)
+static weft_code write_gallery(weft_page *page, const weft_photograph_set *set, weft_error *error)
 {
     fputs(
         "<h2>Pictures</h2>\n<p>Left: the photograph. Right: the sample in it, seen straight from above, white paper as "
         "white.</p>\n<div class=\"gallery\">\n",
         page->html);
-    for (int i = 0; i < hand->count; i++) {
-        const weft_photographs_photograph *p = &hand->photograph[i];
+    for (int i = 0; i < set->count; i++) {
+        const weft_photographs_photograph *p = &set->photograph[i];
         fprintf(page->html, "<figure%s><div>", weft_photographs_used(p) ? "" : " class=\"bad\"");
         if (p->thumbnail.pixels) {
             WEFT_TRY(write_thumbnail(page->folder, i, "photograph", &p->thumbnail, error));
@@ -254,33 +253,33 @@ static weft_code write_gallery(weft_page *page, const weft_hand *hand, weft_erro
 }
 
 static weft_code write_page(weft_page *page, const char *dataset, const weft_photographs_settings *settings,
-                            const weft_hand *hand, weft_error *error)
+                            const weft_photograph_set *set, weft_error *error)
 {
     fputs("<p class=\"note\">Dataset ", page->html);
     weft_page_text(page, dataset);
     fprintf(page->html, ", %d \u00d7 %d texels of %.3f mm</p>\n", settings->width, settings->height,
             settings->target.opening_mm / settings->width);
-    write_tiles(page, hand);
-    write_left_out(page, hand);
+    write_tiles(page, set);
+    write_left_out(page, set);
     fputs("<h2>Where camera and lamp stood</h2>\n<p class=\"note\">Directions as seen from above the sample, by their "
           "angle "
           "from its normal.</p>\n<div class=\"plots\">\n",
           page->html);
-    plot_directions(page, hand);
-    plot_tone(page, hand);
+    plot_directions(page, set);
+    plot_tone(page, set);
     fputs("</div>\n", page->html);
-    write_camera(page, settings, hand);
-    WEFT_TRY(write_gallery(page, hand, error));
-    write_table(page, hand);
+    write_camera(page, settings, set);
+    WEFT_TRY(write_gallery(page, set, error));
+    write_table(page, set);
     return WEFT_OK;
 }
 
 weft_code weft_photographs_report(const char *folder, const char *dataset, const weft_photographs_settings *settings,
-                                  const weft_hand *hand, weft_error *error)
+                                  const weft_photograph_set *set, weft_error *error)
 {
     weft_page page;
     WEFT_TRY(weft_page_begin(folder, "From your photographs to a dataset", &page, error));
-    weft_code code = write_page(&page, dataset, settings, hand, error);
+    weft_code code = write_page(&page, dataset, settings, set, error);
     if (code == WEFT_OK)
         return weft_page_finish(&page, error);
     weft_page_abandon(&page);

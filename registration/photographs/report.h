@@ -7,15 +7,15 @@
 
 /* Writes index.html and its pictures into `folder`; `dataset` is the path of what was made. Errors: WEFT_SYSTEM. */
 weft_code weft_photographs_report(const char *folder, const char *dataset, const weft_photographs_settings *settings,
-                                  const weft_hand *hand, weft_error *error);
+                                  const weft_photograph_set *set, weft_error *error);
 
-enum { WEFT_PHOTOGRAPHS_WORDS_SIZE = 200 };
+enum { WEFT_PHOTOGRAPHS_TEXT_SIZE = 200 };
 
 /* What tells the tone curve, and how well, in words. Pure. */
-void weft_photographs_describe_tone(const weft_hand *hand, char words[WEFT_PHOTOGRAPHS_WORDS_SIZE]);
+void weft_photographs_describe_tone(const weft_photograph_set *set, char words[WEFT_PHOTOGRAPHS_TEXT_SIZE]);
 
 /* How many samples are masked because they are clipped, too dark to be read, or hidden, in words. Pure. */
-void weft_photographs_describe_masks(const weft_hand *hand, const weft_photographs_settings *settings,
-                                     char words[WEFT_PHOTOGRAPHS_WORDS_SIZE]);
+void weft_photographs_describe_masks(const weft_photograph_set *set, const weft_photographs_settings *settings,
+                                     char words[WEFT_PHOTOGRAPHS_TEXT_SIZE]);
 
 #endif

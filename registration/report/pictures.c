@@ -21,11 +21,11 @@ weft_code weft_report_prepare(const char *folder, weft_error *error)
     return weft_make_folder(pictures, error);
 }
 
-static weft_code write_picture(const weft_registration *registration, int stay, const char *what,
+static weft_code write_picture(const weft_registration *registration, int viewpoint, const char *what,
                                const weft_image *image, weft_error *error)
 {
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/pictures/%03d_%s.png", registration->settings.report_folder, stay, what) >=
+    if (snprintf(path, sizeof path, "%s/pictures/%03d_%s.png", registration->settings.report_folder, viewpoint, what) >=
         (int)sizeof path)
         return weft_fail(error, WEFT_BAD_USAGE, "the report's folder has too long a name");
     return weft_image_write(path, image, NULL, error);
@@ -87,12 +87,12 @@ static void paint_difference(float photograph, float drawing, bool drawn, float 
 }
 
 static weft_code write_comparison(const weft_registration *registration, const weft_sight *sight,
-                                  const weft_target *target, int stay, const weft_report_pictures *pictures,
+                                  const weft_target *target, int viewpoint, const weft_report_pictures *pictures,
                                   weft_error *error)
 {
     const weft_camera *camera = &sight->camera;
     const float *drawing = pictures->fitted ? pictures->fitted : pictures->average;
-    const weft_plate_view view = weft_plate_view_of(camera, &registration->pose[stay].homography, &sight->bend);
+    const weft_plate_view view = weft_plate_view_of(camera, &registration->pose[viewpoint].homography, &sight->bend);
     int side = (camera->width + widest_picture - 1) / widest_picture;
     weft_image overlay = {0}, difference = {0};
     weft_code code = weft_image_create(camera->width / side, camera->height / side, &overlay, error);
@@ -113,15 +113,16 @@ static weft_code write_comparison(const weft_registration *registration, const w
         }
     }
     if (code == WEFT_OK)
-        code = write_picture(registration, stay, "photograph", &overlay, error);
+        code = write_picture(registration, viewpoint, "photograph", &overlay, error);
     if (code == WEFT_OK && pictures->fitted)
-        code = write_picture(registration, stay, "difference", &difference, error);
+        code = write_picture(registration, viewpoint, "difference", &difference, error);
     weft_image_free(&overlay);
     weft_image_free(&difference);
     return code;
 }
 
-static weft_code write_texels(const weft_registration *registration, int stay, const float *texel, weft_error *error)
+static weft_code write_texels(const weft_registration *registration, int viewpoint, const float *texel,
+                              weft_error *error)
 {
     weft_image image = {0};
     int width = registration->settings.width, height = registration->settings.height;
@@ -131,16 +132,16 @@ static weft_code write_texels(const weft_registration *registration, int stay, c
     WEFT_TRY(weft_image_create(width, height, &image, error));
     for (size_t i = 0; i < values; i++)
         image.pixels[i] = weft_srgb_of_linear(texel[i] / white);
-    weft_code code = write_picture(registration, stay, "texels", &image, error);
+    weft_code code = write_picture(registration, viewpoint, "texels", &image, error);
     weft_image_free(&image);
     return code;
 }
 
-weft_code weft_report_write_pictures(const weft_registration *registration, const weft_sight *sight, int stay,
+weft_code weft_report_write_pictures(const weft_registration *registration, const weft_sight *sight, int viewpoint,
                                      const weft_report_pictures *pictures, weft_error *error)
 {
     weft_target target = weft_target_for_opening(sight->opening_mm);
     if (pictures->average)
-        WEFT_TRY(write_comparison(registration, sight, &target, stay, pictures, error));
-    return pictures->texel ? write_texels(registration, stay, pictures->texel, error) : WEFT_OK;
+        WEFT_TRY(write_comparison(registration, sight, &target, viewpoint, pictures, error));
+    return pictures->texel ? write_texels(registration, viewpoint, pictures->texel, error) : WEFT_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "registration/outcome/outcome.h"
 
-/* What there is to see of a stay; any may be NULL. */
+/* What there is to see of a viewpoint; any may be NULL. */
 typedef struct weft_report_pictures {
     const float *average; /* [camera height][width] */
     const float *fitted;  /* the same of the drawn target under the fitted lighting */
@@ -14,8 +14,8 @@ typedef struct weft_report_pictures {
 /* Makes the folder. Errors: WEFT_SYSTEM. */
 weft_code weft_report_prepare(const char *folder, weft_error *error);
 
-/* Writes the pictures of stay `stay` (an index into the survey) as PNG. Errors: WEFT_SYSTEM. */
-weft_code weft_report_write_pictures(const weft_registration *registration, const weft_sight *sight, int stay,
+/* Writes the pictures of viewpoint `viewpoint` (an index into the survey) as PNG. Errors: WEFT_SYSTEM. */
+weft_code weft_report_write_pictures(const weft_registration *registration, const weft_sight *sight, int viewpoint,
                                      const weft_report_pictures *pictures, weft_error *error);
 
 /* Writes index.html; `dataset` is the path of what was made. Errors: WEFT_SYSTEM. */

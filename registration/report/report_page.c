@@ -12,10 +12,11 @@ static weft_code write_summary(weft_page *page, const weft_session *session, con
     WEFT_TRY(weft_ring_summarise(session, r, -1, &all, error));
     fputs("<div class=\"tiles\">\n", page->html);
     weft_page_tile(page, "photographs in the dataset", "%d of %d", r->image_count, session->shot_count);
-    weft_page_tile(page, "stays of the camera registered", "%d of %d", r->survey.stay_count - r->failed_stays,
-                   r->survey.stay_count);
-    weft_page_tile(page, "thousandths of a texel: random error, median stay", "%.2f", 1000 * all.median_uncertainty);
-    weft_page_tile(page, "thousandths of a texel: random error, worst stay", "%.2f", 1000 * all.worst_uncertainty);
+    weft_page_tile(page, "viewpoints of the camera registered", "%d of %d",
+                   r->survey.viewpoint_count - r->failed_viewpoints, r->survey.viewpoint_count);
+    weft_page_tile(page, "thousandths of a texel: random error, median viewpoint", "%.2f",
+                   1000 * all.median_uncertainty);
+    weft_page_tile(page, "thousandths of a texel: random error, worst viewpoint", "%.2f", 1000 * all.worst_uncertainty);
     weft_page_tile(page, "median shift against the rig's promise", "%.3f mm", all.median_shift_mm);
     if (session->colour.terms > 0)
         weft_page_tile(page, "CIEDE2000: linear sRGB, of a chart's patch left out", "%.2f",
@@ -25,37 +26,40 @@ static weft_code write_summary(weft_page *page, const weft_session *session, con
     return WEFT_OK;
 }
 
-static void write_figure(weft_page *page, const weft_registration *r, int stay)
+static void write_figure(weft_page *page, const weft_registration *r, int viewpoint)
 {
-    const weft_stay *one = &r->survey.stay[stay];
-    const weft_view_pose *pose = &r->pose[stay];
+    const weft_viewpoint *one = &r->survey.viewpoint[viewpoint];
+    const weft_view_pose *pose = &r->pose[viewpoint];
     weft_angles view = r->survey.view[one->view];
     bool failed = pose->source == WEFT_POSE_FAILED;
     fprintf(page->html, "<figure%s><div>", failed ? " class=\"bad\"" : "");
     fprintf(page->html, "<img loading=\"lazy\" alt=\"photograph over drawing\" src=\"pictures/%03d_photograph.png\">",
-            stay);
+            viewpoint);
     if (pose->source == WEFT_POSE_DRAWING)
-        fprintf(page->html, "<img loading=\"lazy\" alt=\"difference\" src=\"pictures/%03d_difference.png\">", stay);
-    if (r->used[stay] > 0)
+        fprintf(page->html, "<img loading=\"lazy\" alt=\"difference\" src=\"pictures/%03d_difference.png\">",
+                viewpoint);
+    if (r->used[viewpoint] > 0)
         fprintf(page->html,
-                "<img class=\"texels\" loading=\"lazy\" alt=\"rectified\" src=\"pictures/%03d_texels.png\">", stay);
-    fprintf(
-        page->html,
-        "</div><figcaption>%.0f\u00b0 from the normal, azimuth %.0f\u00b0 (%s), stay %d: %s%s</figcaption></figure>\n",
-        weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), weft_view_name_of(view).text, one->stay,
-        failed ? "failed" : "pose from ", failed ? "" : weft_pose_source_name(pose));
+                "<img class=\"texels\" loading=\"lazy\" alt=\"rectified\" src=\"pictures/%03d_texels.png\">",
+                viewpoint);
+    fprintf(page->html,
+            "</div><figcaption>%.0f\u00b0 from the normal, azimuth %.0f\u00b0 (%s), viewpoint %d: "
+            "%s%s</figcaption></figure>\n",
+            weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), weft_view_name_of(view).text,
+            one->viewpoint, failed ? "failed" : "pose from ", failed ? "" : weft_pose_source_name(pose));
 }
 
 static void write_gallery(weft_page *page, const weft_registration *r)
 {
-    fputs("<h2>Pictures</h2>\n<p>Left: the average of a stay's photographs in red over the drawn target in cyan; grey "
+    fputs("<h2>Pictures</h2>\n<p>Left: the average of a viewpoint's photographs in red over the drawn target in cyan; "
+          "grey "
           "means "
           "that they agree. Middle: their difference, four times enlarged, on the print. Right: one photograph, "
           "rectified "
           "to texels.</p>\n<div class=\"gallery\">\n",
           page->html);
-    for (int stay = 0; stay < r->survey.stay_count; stay++)
-        write_figure(page, r, stay);
+    for (int viewpoint = 0; viewpoint < r->survey.viewpoint_count; viewpoint++)
+        write_figure(page, r, viewpoint);
     fputs("</div>\n", page->html);
 }
 
@@ -74,7 +78,7 @@ static weft_code write_page(weft_page *page, const weft_session *session, const 
     WEFT_TRY(weft_write_whites(page, session, r, error));
     weft_write_rig(page, session, r);
     write_gallery(page, r);
-    weft_write_stays(page, session, r);
+    weft_write_viewpoints(page, session, r);
     return WEFT_OK;
 }
 

@@ -37,12 +37,12 @@ void weft_write_rig(weft_page *page, const weft_session *session, const weft_reg
     const weft_vignetting *v = &r->found.vignetting;
     double white = white_raw(session, r);
     fputs("<h2>What the photographs tell of the rig</h2>\n<ul>\n", page->html);
-    if (bend->stays > 0)
-        fprintf(
-            page->html,
-            "<li>The plate is bent by %.3f mm between its middle and its rim (random error %.4f mm, from %d stays); "
-            "this is taken out.</li>\n",
-            weft_bend_depth_mm(bend), bend->standard_error_mm, bend->stays);
+    if (bend->viewpoints > 0)
+        fprintf(page->html,
+                "<li>The plate is bent by %.3f mm between its middle and its rim (random error %.4f mm, from %d "
+                "viewpoints); "
+                "this is taken out.</li>\n",
+                weft_bend_depth_mm(bend), bend->standard_error_mm, bend->viewpoints);
     else
         fputs("<li>Its bend could not be found: the plate is taken as flat.</li>\n", page->html);
     if (v->photographs > 0)

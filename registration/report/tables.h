@@ -5,10 +5,10 @@
 #include "base/text/html_page.h"
 #include "registration/outcome/outcome.h"
 
-/* The stays of one ring of views (as in ubo81: 0, 15 .. 75 degrees; the nearest counts). */
+/* The viewpoints of one ring of views (as in ubo81: 0, 15 .. 75 degrees; the nearest counts). */
 typedef struct weft_ring_summary {
-    int stays, failed;
-    double median_uncertainty, worst_uncertainty; /* texels, over the stays that did not fail */
+    int viewpoints, failed;
+    double median_uncertainty, worst_uncertainty; /* texels, over the viewpoints that did not fail */
     double median_correlation, worst_correlation;
     double median_shift_mm, worst_shift_mm;
     double saturated; /* fraction of the samples */
@@ -32,6 +32,6 @@ weft_code weft_write_rings(weft_page *page, const weft_session *session, const w
 weft_code weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *registration,
                             weft_error *error);
 void weft_write_rig(weft_page *page, const weft_session *session, const weft_registration *registration);
-void weft_write_stays(weft_page *page, const weft_session *session, const weft_registration *registration);
+void weft_write_viewpoints(weft_page *page, const weft_session *session, const weft_registration *registration);
 
 #endif

@@ -39,36 +39,36 @@ static void write_ring(weft_page *page, int ring, double overall, double *level,
         100 * weft_quantile(disagreement, count, 0.5));
 }
 
-/* Median level of the measured photographs of a stay; 0 where there is none. */
-static double level_of_stay(const weft_registration *r, const weft_stay *stay, double *scratch)
+/* Median level of the measured photographs of a viewpoint; 0 where there is none. */
+static double level_of_viewpoint(const weft_registration *r, const weft_viewpoint *viewpoint, double *scratch)
 {
     int count = 0;
-    for (int i = 0; i < stay->count; i++) {
-        if (r->white[stay->shot[i]].patches > 0)
-            scratch[count++] = level_of(&r->white[stay->shot[i]]);
+    for (int i = 0; i < viewpoint->count; i++) {
+        if (r->white[viewpoint->shot[i]].patches > 0)
+            scratch[count++] = level_of(&r->white[viewpoint->shot[i]]);
     }
     return weft_quantile(scratch, count, 0.5);
 }
 
-/* The median white level of every stay against the median of all, over the order in which they were taken. */
+/* The median white level of every viewpoint against the median of all, over the order in which they were taken. */
 static weft_code write_drift(weft_page *page, const weft_registration *r, double overall, double *scratch,
                              weft_error *error)
 {
-    int count = r->survey.stay_count;
+    int count = r->survey.viewpoint_count;
     double(*point)[2] = calloc((size_t)count + 1, sizeof *point);
     if (!point)
         return weft_fail_memory(error, "white levels", (size_t)count * sizeof *point);
     for (int i = 0; i < count; i++) {
-        double level = level_of_stay(r, &r->survey.stay[i], scratch);
-        point[i][0] = r->survey.stay[i].stay;
+        double level = level_of_viewpoint(r, &r->survey.viewpoint[i], scratch);
+        point[i][0] = r->survey.viewpoint[i].viewpoint;
         point[i][1] = level > 0 ? 100 * (level / overall - 1) : NAN;
     }
-    weft_chart_series stays = {.point_count = count, .point = (const double(*)[2])point};
+    weft_chart_series viewpoints = {.point_count = count, .point = (const double(*)[2])point};
     weft_chart chart = {"The lamp over the session",
-                        {"stay of the camera", "", 0, 0, 1},
+                        {"viewpoint of the camera", "", 0, 0, 1},
                         {"white level against the median", " %", -5, 5, 0},
                         1,
-                        &stays};
+                        &viewpoints};
     weft_chart_write(page, &chart);
     free(point);
     return WEFT_OK;

@@ -203,12 +203,12 @@ static void journal_gives_back_what_was_appended(void **state)
     weft_session session = example(), read;
     write_journal("");
     weft_shot_record record = {
-        .taken = true, .stay = 4, .exposure_s = 0.0123456, .bytes = 778954, .crc32 = 0xfedcba98u};
+        .taken = true, .viewpoint = 4, .exposure_s = 0.0123456, .bytes = 778954, .crc32 = 0xfedcba98u};
     assert_int_equal(weft_session_append(&session, 2, &record, &error), WEFT_OK);
     assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
     assert_false(read.record[0].taken);
     assert_true(read.record[2].taken);
-    assert_int_equal(read.record[2].stay, 4);
+    assert_int_equal(read.record[2].viewpoint, 4);
     assert_int_equal(read.record[2].crc32, 0xfedcba98u);
     assert_true(read.record[2].exposure_s == 0.0123456);
     weft_session_free(&read);
@@ -224,7 +224,7 @@ static void cut_last_line_is_forgotten_and_overwritten(void **state)
     assert_true(read.record[0].taken);
     assert_false(read.record[1].taken);
     weft_session_free(&read);
-    weft_shot_record record = {.taken = true, .stay = 1, .exposure_s = 0.25, .bytes = 20, .crc32 = 2};
+    weft_shot_record record = {.taken = true, .viewpoint = 1, .exposure_s = 0.25, .bytes = 20, .crc32 = 2};
     assert_int_equal(weft_session_append(&session, 1, &record, &error), WEFT_OK);
     assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
     assert_true(read.record[1].taken && read.record[1].bytes == 20);
@@ -265,7 +265,7 @@ static void append_to_a_full_disk_fails_and_loses_nothing(void **state)
     getrlimit(RLIMIT_FSIZE, &before);
     small = (struct rlimit){(rlim_t)status.st_size + 10, before.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
-    weft_shot_record record = {.taken = true, .stay = 1, .exposure_s = 0.25, .bytes = 20, .crc32 = 2};
+    weft_shot_record record = {.taken = true, .viewpoint = 1, .exposure_s = 0.25, .bytes = 20, .crc32 = 2};
     weft_code code = weft_session_append(&session, 1, &record, &error);
     setrlimit(RLIMIT_FSIZE, &before);
     assert_int_equal(code, WEFT_SYSTEM);

@@ -14,21 +14,21 @@ static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_vie
 
 /* A rig whose photographs are even, as bright as their exposure is long. */
 typedef struct bench {
-    int homings, first_stay, moves, exposures, stops;
+    int homings, first_viewpoint, moves, exposures, stops;
     int disturbances; /* photographs during which it will be pushed */
     bool homed, broken, light_on, jammed;
 
     weft_angles view;
 } bench;
 
-static weft_code home(void *device, int first_stay, weft_error *error)
+static weft_code home(void *device, int first_viewpoint, weft_error *error)
 {
     bench *b = device;
     if (b->broken)
         return weft_fail(error, WEFT_SYSTEM, "bench stage: axis 2 does not find its reference");
     b->homings++;
     b->homed = true;
-    b->first_stay = first_stay;
+    b->first_viewpoint = first_viewpoint;
     b->view.theta_rad = -1;
     return WEFT_OK;
 }
@@ -157,20 +157,20 @@ static void the_session_remembers_what_the_rig_says_of_itself(void **state)
     assert_string_equal(session.sample, "a piece of paper");
     assert_string_equal(session.rig_settings, "{\"lens\":\"75 mm\"}");
     for (int shot = 0; shot < SHOTS; shot++)
-        assert_int_equal(session.record[shot].stay, shot / 2);
+        assert_int_equal(session.record[shot].viewpoint, shot / 2);
     weft_session_free(&session);
     remove_session();
 }
 
-static void the_stage_is_homed_once_and_told_how_many_stays_there_were(void **state)
+static void the_stage_is_homed_once_and_told_how_many_viewpoints_there_were(void **state)
 {
     (void)state;
-    bench b = {.first_stay = -1};
+    bench b = {.first_viewpoint = -1};
     weft_rig rig = rig_of(&b);
     weft_capture_summary summary;
     assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
     assert_int_equal(b.homings, 1);
-    assert_int_equal(b.first_stay, 0);
+    assert_int_equal(b.first_viewpoint, 0);
     /* Nothing is left to do: no axis moves. */
     assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
     assert_int_equal(b.homings, 1);
@@ -178,7 +178,7 @@ static void the_stage_is_homed_once_and_told_how_many_stays_there_were(void **st
     assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
     assert_int_equal(summary.taken, 2);
     assert_int_equal(b.homings, 2);
-    assert_int_equal(b.first_stay, 2);
+    assert_int_equal(b.first_viewpoint, 2);
     remove_session();
 }
 
@@ -351,7 +351,7 @@ static void the_stage_chooses_the_order_and_knows_how_long_it_takes(void **state
     assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
     assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
     for (int shot = 0; shot < SHOTS; shot++)
-        assert_int_equal(session.record[shot].stay, 1 - shot / 2);
+        assert_int_equal(session.record[shot].viewpoint, 1 - shot / 2);
     weft_session_free(&session);
     remove_session();
     const weft_capture_request request = {.folder = "session", .plan = "plan.csv"};
@@ -383,7 +383,7 @@ int test_any_rig(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_session_remembers_what_the_rig_says_of_itself),
-        cmocka_unit_test(the_stage_is_homed_once_and_told_how_many_stays_there_were),
+        cmocka_unit_test(the_stage_is_homed_once_and_told_how_many_viewpoints_there_were),
         cmocka_unit_test(a_stage_that_cannot_be_homed_ends_the_run_with_its_message),
         cmocka_unit_test(another_rig_does_not_continue_a_session),
         cmocka_unit_test(the_session_knows_where_the_axes_put_the_camera),

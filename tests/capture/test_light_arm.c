@@ -12,8 +12,8 @@ enum { SEED = 11, SIDE = 208, CASES = 7 };
 static const double light_mm = 650, exposure_s = 0.5;
 
 /* Degrees: view, light. */
-static const double stays[CASES][4] = {{0, 0, 40, 30},   {0, 0, 60, 200},  {0, 0, 75, 290},   {20, 90, 0, 0},
-                                       {20, 90, 70, 10}, {40, 200, 55, 0}, {40, 200, 72, 120}};
+static const double viewpoints[CASES][4] = {{0, 0, 40, 30},   {0, 0, 60, 200},  {0, 0, 75, 290},   {20, 90, 0, 0},
+                                            {20, 90, 70, 10}, {40, 200, 55, 0}, {40, 200, 72, 120}};
 
 static weft_angles degrees(double theta_deg, double phi_deg)
 {
@@ -63,12 +63,12 @@ static mounting mounting_of(const weft_virtual_settings *s)
         weft_scale(weft_random_direction(SEED, WEFT_RANDOM_MOUNTING, 1), s->mounting_translation_mm)};
 }
 
-/* The draw of a move is numbered by the stay and both driven angles in units of 1e-4 degrees. */
-static weft_vec3 arm_turn(const weft_virtual_settings *s, weft_angles driven, int stay)
+/* The draw of a move is numbered by the viewpoint and both driven angles in units of 1e-4 degrees. */
+static weft_vec3 arm_turn(const weft_virtual_settings *s, weft_angles driven, int viewpoint)
 {
     uint64_t theta = (uint64_t)llround(weft_deg_of_rad(driven.theta_rad) * 1e4);
     uint64_t phi = (uint64_t)llround(weft_deg_of_rad(driven.phi_rad) * 1e4);
-    uint64_t move = ((uint64_t)stay * 1000003 + theta) * 10000019 + phi;
+    uint64_t move = ((uint64_t)viewpoint * 1000003 + theta) * 10000019 + phi;
     return weft_scale(weft_random_normal3(SEED, WEFT_RANDOM_LIGHT, move), weft_rad_of_deg(s->light_rotation_deg));
 }
 
@@ -78,11 +78,11 @@ static weft_vec3 to_plate(const mounting *m, weft_vec3 in_rig)
     return turn(weft_subtract(in_rig, m->shift), weft_scale(m->turn, -1));
 }
 
-static weft_vec3 light_on_plate(const weft_virtual_settings *s, weft_angles driven, int stay)
+static weft_vec3 light_on_plate(const weft_virtual_settings *s, weft_angles driven, int viewpoint)
 {
     mounting m = mounting_of(s);
     weft_vec3 driven_to = weft_scale(weft_direction_of_angles(driven), light_mm);
-    return to_plate(&m, turn(driven_to, arm_turn(s, driven, stay)));
+    return to_plate(&m, turn(driven_to, arm_turn(s, driven, viewpoint)));
 }
 
 /* The pixel that sees a point of the plate: camera at the nominal pose, plate mounted askew. */
@@ -139,16 +139,17 @@ static double spread(const weft_virtual_settings *s, const weft_virtual_settings
     uint16_t *samples = malloc((size_t)SIDE * SIDE * 3 * sizeof *samples);
     weft_target target = weft_target_for_opening(s->rig.opening_mm);
     double sum = 0, squares = 0;
-    int stay = -1, count = CASES * WEFT_TARGET_REFERENCE_COUNT;
+    int viewpoint = -1, count = CASES * WEFT_TARGET_REFERENCE_COUNT;
     assert_non_null(samples);
     assert_int_equal(weft_virtual_rig_open(&request, &virtual, NULL), WEFT_OK);
     assert_int_equal(virtual.rig.stage.home(virtual.rig.stage.device, 0, NULL), WEFT_OK);
     for (int i = 0; i < CASES; i++) {
-        weft_angles view = degrees(stays[i][0], stays[i][1]), light = degrees(stays[i][2], stays[i][3]);
-        stay += i == 0 || stays[i][0] != stays[i - 1][0];
+        weft_angles view = degrees(viewpoints[i][0], viewpoints[i][1]),
+                    light = degrees(viewpoints[i][2], viewpoints[i][3]);
+        viewpoint += i == 0 || viewpoints[i][0] != viewpoints[i - 1][0];
         photograph(&virtual.rig, view, light, samples);
         for (int patch = 0; patch < WEFT_TARGET_REFERENCE_COUNT; patch++) {
-            double seen = brightness(s, samples, view, light_on_plate(believed, light, stay),
+            double seen = brightness(s, samples, view, light_on_plate(believed, light, viewpoint),
                                      weft_target_reference(&target, patch));
             sum += seen;
             squares += seen * seen;

@@ -80,7 +80,7 @@ static void few_poses_are_ordered_nearly_as_well_as_can_be(void **state)
     assert_true(sum / CASES < 1.05);
 }
 
-static void a_stay_is_visited_once(void **state)
+static void a_viewpoint_is_visited_once(void **state)
 {
     (void)state;
     enum { COUNT = 40 };
@@ -145,7 +145,7 @@ int test_path(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(few_poses_are_ordered_nearly_as_well_as_can_be),
-        cmocka_unit_test(a_stay_is_visited_once),
+        cmocka_unit_test(a_viewpoint_is_visited_once),
         cmocka_unit_test(the_goniometer_is_within_five_percent_of_the_bound),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

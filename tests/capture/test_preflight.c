@@ -41,10 +41,10 @@ static weft_code move(void *device, weft_angles view, weft_angles light, bool *m
     return f->stage.move(f->stage.device, view, light, moved, error);
 }
 
-static weft_code home(void *device, int first_stay, weft_error *error)
+static weft_code home(void *device, int first_viewpoint, weft_error *error)
 {
     faulty *f = device;
-    return f->stage.home(f->stage.device, first_stay, error);
+    return f->stage.home(f->stage.device, first_viewpoint, error);
 }
 
 static uint16_t clip(double value)

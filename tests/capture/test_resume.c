@@ -105,13 +105,13 @@ static void assert_retaken(void (*disturb)(const char *path))
     weft_session_photograph_path(&session, 12, path, sizeof path);
     disturb(path);
     uint32_t untouched = session.record[11].crc32;
-    int stay = session.record[12].stay;
+    int viewpoint = session.record[12].viewpoint;
     weft_session_free(&session);
     complete_run();
     assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
     assert_int_equal(session.record[11].crc32, untouched);
-    /* The axes were homed again, so the photograph is of a new stay. */
-    assert_int_not_equal(session.record[12].stay, stay);
+    /* The axes were homed again, so the photograph is of a new viewpoint. */
+    assert_int_not_equal(session.record[12].viewpoint, viewpoint);
     assert_int_equal(small_session_journal_lines("session"), SMALL_SHOTS + 1);
     size_t size;
     unsigned char *bytes = scratch_load(path, &size);

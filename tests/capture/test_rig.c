@@ -230,7 +230,7 @@ static void without_light_only_the_read_noise_remains(void **state)
     close_rig(&f);
 }
 
-static void a_stay_lasts_until_the_camera_axes_move(void **state)
+static void a_viewpoint_lasts_until_the_camera_axes_move(void **state)
 {
     (void)state;
     weft_virtual_settings settings = quiet_settings();
@@ -250,7 +250,7 @@ static void a_stay_lasts_until_the_camera_axes_move(void **state)
     close_rig(&f);
 }
 
-static void errors_of_a_stay_have_the_size_that_the_settings_say(void **state)
+static void errors_of_a_viewpoint_have_the_size_that_the_settings_say(void **state)
 {
     (void)state;
     weft_virtual_settings settings = weft_virtual_settings_default();
@@ -258,13 +258,13 @@ static void errors_of_a_stay_have_the_size_that_the_settings_say(void **state)
     weft_virtual_world world = weft_virtual_world_of(&settings, 3);
     weft_pose nominal = weft_pose_of_view(degrees(0, 0), settings.rig.camera_distance_mm);
     double squares = 0;
-    const int stays = 3000;
-    for (int stay = 0; stay < stays; stay++) {
-        weft_pose pose = weft_virtual_world_pose(&world, degrees(0, 0), stay);
+    const int viewpoints = 3000;
+    for (int viewpoint = 0; viewpoint < viewpoints; viewpoint++) {
+        weft_pose pose = weft_virtual_world_pose(&world, degrees(0, 0), viewpoint);
         weft_vec3 shift = weft_subtract(pose.translation, nominal.translation);
         squares += weft_dot(shift, shift) / 3;
     }
-    assert_true(fabs(sqrt(squares / stays) / settings.stay_translation_mm - 1) < 0.05);
+    assert_true(fabs(sqrt(squares / viewpoints) / settings.stay_translation_mm - 1) < 0.05);
 }
 
 int test_rig(void)
@@ -275,8 +275,8 @@ int test_rig(void)
         cmocka_unit_test(grazing_views_are_out_of_focus_and_frontal_ones_are_not),
         cmocka_unit_test(the_camera_in_the_way_of_the_light_darkens_the_photograph),
         cmocka_unit_test(without_light_only_the_read_noise_remains),
-        cmocka_unit_test(a_stay_lasts_until_the_camera_axes_move),
-        cmocka_unit_test(errors_of_a_stay_have_the_size_that_the_settings_say),
+        cmocka_unit_test(a_viewpoint_lasts_until_the_camera_axes_move),
+        cmocka_unit_test(errors_of_a_viewpoint_have_the_size_that_the_settings_say),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,7 +57,7 @@ static int brightest_white(const virtual_session *request, const weft_session *s
     assert_non_null(samples);
     assert_int_equal(weft_photograph_read(path, SMALL_SIZE, SMALL_SIZE, session->bits, samples, NULL), WEFT_OK);
     weft_virtual_world world = weft_virtual_world_of(&request->rig.settings, request->rig.seed);
-    weft_pose pose = weft_virtual_world_pose(&world, session->shot[shot].view, session->record[shot].stay);
+    weft_pose pose = weft_virtual_world_pose(&world, session->shot[shot].view, session->record[shot].viewpoint);
     weft_homography homography = weft_homography_of_pose(&world.camera, &pose);
     int brightest = 0;
     for (int i = 0; i < WEFT_TARGET_REFERENCE_COUNT * 9; i++) {

@@ -38,11 +38,11 @@ static void remove_session(void)
 static int count_faults(const char *folder)
 {
     weft_session session;
-    weft_session_faults faults;
+    weft_session_problems faults;
     assert_int_equal(weft_session_open(folder, &session, NULL), WEFT_OK);
     assert_int_equal(weft_session_check(&session, NULL, &faults, NULL), WEFT_OK);
     int count = faults.count;
-    weft_session_faults_free(&faults);
+    weft_session_problems_free(&faults);
     weft_session_free(&session);
     return count;
 }
@@ -111,7 +111,7 @@ static void what_is_missing_or_damaged_is_taken_the_next_time(void **state)
     scratch_store("session/sensor/flat_004.tif", "more", 4);
     assert_int_equal(count_faults("session"), 3);
     assert_int_equal(run(&request, NULL, NULL, &error), WEFT_OK);
-    assert_int_equal(count_faults("session"), 1); /* the foreign one stays */
+    assert_int_equal(count_faults("session"), 1); /* the unexpected one stays */
     assert_int_equal(remove("session/sensor/flat_004.tif"), 0);
     assert_int_equal(count_faults("session"), 0);
 

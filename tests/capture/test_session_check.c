@@ -1,4 +1,4 @@
-/* Every fault that a session may have is found, told once, and mended by the next capture. */
+/* Every problem that a session may have is found, told once, and mended by the next capture. */
 #include "base/atomic_file.h"
 #include "capture/session_check.h"
 #include "tests/capture/small_session.h"
@@ -24,15 +24,15 @@ static int capture(void)
     return summary.taken;
 }
 
-static weft_session_faults check(void)
+static weft_session_problems check(void)
 {
     weft_session session;
-    weft_session_faults faults;
+    weft_session_problems problems;
     weft_error error = {0};
     expect_ok(weft_session_open("session", &session, &error), &error);
-    expect_ok(weft_session_check(&session, NULL, &faults, &error), &error);
+    expect_ok(weft_session_check(&session, NULL, &problems, &error), &error);
     weft_session_free(&session);
-    return faults;
+    return problems;
 }
 
 static void path_of(int shot, char path[PATH_MAX])
@@ -71,15 +71,15 @@ static void repeat_photograph(int shot, int instead)
     weft_session_free(&session);
 }
 
-static void expect_fault(const weft_session_faults *faults, int index, weft_session_fault_kind kind, int shot,
-                         const char *says)
+static void expect_problem(const weft_session_problems *problems, int index, weft_session_problem_kind kind, int shot,
+                           const char *says)
 {
-    assert_in_range(index, 0, faults->count - 1);
-    const weft_session_fault *fault = &faults->fault[index];
-    assert_int_equal(fault->kind, kind);
-    assert_int_equal(fault->shot, shot);
-    if (!strstr(fault->text, says))
-        fail_msg("%s", fault->text);
+    assert_in_range(index, 0, problems->count - 1);
+    const weft_session_problem *problem = &problems->problem[index];
+    assert_int_equal(problem->kind, kind);
+    assert_int_equal(problem->shot, shot);
+    if (!strstr(problem->text, says))
+        fail_msg("%s", problem->text);
 }
 
 static void remove_session(void)
@@ -91,13 +91,13 @@ static void a_session_as_it_was_taken_is_sound(void **state)
 {
     (void)state;
     capture();
-    weft_session_faults faults = check();
-    assert_int_equal(faults.count, 0);
-    weft_session_faults_free(&faults);
+    weft_session_problems problems = check();
+    assert_int_equal(problems.count, 0);
+    weft_session_problems_free(&problems);
     remove_session();
 }
 
-static void every_fault_is_found_and_the_next_capture_takes_those_shots_alone(void **state)
+static void every_problem_is_found_and_the_next_capture_takes_those_shots_alone(void **state)
 {
     (void)state;
     char path[PATH_MAX];
@@ -108,17 +108,17 @@ static void every_fault_is_found_and_the_next_capture_takes_those_shots_alone(vo
     assert_int_equal(unlink(path), 0);
     change_a_byte(7);
     repeat_photograph(14, 9);
-    weft_session_faults faults = check();
-    assert_int_equal(faults.count, 3);
-    expect_fault(&faults, 0, WEFT_FAULT_MISSING, 3, "No such file");
-    expect_fault(&faults, 1, WEFT_FAULT_DAMAGED, 7, "has the checksum");
+    weft_session_problems problems = check();
+    assert_int_equal(problems.count, 3);
+    expect_problem(&problems, 0, WEFT_PROBLEM_MISSING, 3, "No such file");
+    expect_problem(&problems, 1, WEFT_PROBLEM_DAMAGED, 7, "has the checksum");
     /* Shot 14 comes later in the plan, but earlier in the journal. */
-    expect_fault(&faults, 2, WEFT_FAULT_DOUBLED, 9, "has the bytes of shot 14");
-    weft_session_faults_free(&faults);
+    expect_problem(&problems, 2, WEFT_PROBLEM_DUPLICATE, 9, "has the bytes of shot 14");
+    weft_session_problems_free(&problems);
     assert_int_equal(capture(), 4);
-    faults = check();
-    assert_int_equal(faults.count, 0);
-    weft_session_faults_free(&faults);
+    problems = check();
+    assert_int_equal(problems.count, 0);
+    weft_session_problems_free(&problems);
     remove_session();
 }
 
@@ -137,10 +137,10 @@ static void a_photograph_that_the_journal_knows_but_nobody_can_read_is_damaged(v
     record.crc32 = 0xddbfe061;
     assert_int_equal(weft_session_append(&session, 5, &record, NULL), WEFT_OK);
     weft_session_free(&session);
-    weft_session_faults faults = check();
-    assert_int_equal(faults.count, 1);
-    expect_fault(&faults, 0, WEFT_FAULT_DAMAGED, 5, "tl000_pl000_tv030_pv000.tif");
-    weft_session_faults_free(&faults);
+    weft_session_problems problems = check();
+    assert_int_equal(problems.count, 1);
+    expect_problem(&problems, 0, WEFT_PROBLEM_DAMAGED, 5, "tl000_pl000_tv030_pv000.tif");
+    weft_session_problems_free(&problems);
     remove_session();
 }
 
@@ -165,19 +165,19 @@ static void photographs_of_a_bracket_are_checked_like_any(void **state)
     weft_session_free(&session);
     assert_true(bracketed > 0);
     assert_int_equal(unlink(path), 0);
-    weft_session_faults faults = check();
-    assert_int_equal(faults.count, 1);
-    expect_fault(&faults, 0, WEFT_FAULT_MISSING, shot, ".bracket");
-    weft_session_faults_free(&faults);
+    weft_session_problems problems = check();
+    assert_int_equal(problems.count, 1);
+    expect_problem(&problems, 0, WEFT_PROBLEM_MISSING, shot, ".bracket");
+    weft_session_problems_free(&problems);
     assert_int_equal(capture(), 1);
-    faults = check();
-    assert_int_equal(faults.count, 0);
-    weft_session_faults_free(&faults);
+    problems = check();
+    assert_int_equal(problems.count, 0);
+    weft_session_problems_free(&problems);
     brackets = 0;
     remove_session();
 }
 
-/* A shot that is taken again with fewer exposures leaves none of the old ones; one that nobody took is foreign. */
+/* A shot that is taken again with fewer exposures leaves none of the old ones; one that nobody took is unexpected. */
 static void a_bracket_that_the_journal_does_not_have_is_foreign(void **state)
 {
     (void)state;
@@ -193,26 +193,26 @@ static void a_bracket_that_the_journal_does_not_have_is_foreign(void **state)
     weft_session_free(&session);
     change_a_byte(shot);
     assert_int_equal(capture(), 1);
-    weft_session_faults faults = check();
-    assert_int_equal(faults.count, 0);
-    weft_session_faults_free(&faults);
+    weft_session_problems problems = check();
+    assert_int_equal(problems.count, 0);
+    weft_session_problems_free(&problems);
     assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
     weft_session_bracket_path(&session, shot, 0, path, sizeof path);
     weft_session_free(&session);
     assert_int_equal(access(path, F_OK), -1);
     scratch_store(path, "x", 1);
-    faults = check();
-    assert_int_equal(faults.count, 1);
-    expect_fault(&faults, 0, WEFT_FAULT_FOREIGN, -1, ".bracket1.tif");
-    weft_session_faults_free(&faults);
+    problems = check();
+    assert_int_equal(problems.count, 1);
+    expect_problem(&problems, 0, WEFT_PROBLEM_UNEXPECTED, -1, ".bracket1.tif");
+    weft_session_problems_free(&problems);
     remove_session();
 }
 
-static bool lists(const weft_session_faults *faults, const char *file)
+static bool lists(const weft_session_problems *problems, const char *file)
 {
-    for (int i = 0; i < faults->count; i++) {
-        if (faults->fault[i].kind == WEFT_FAULT_FOREIGN && faults->fault[i].shot == -1 &&
-            strstr(faults->fault[i].text, file))
+    for (int i = 0; i < problems->count; i++) {
+        if (problems->problem[i].kind == WEFT_PROBLEM_UNEXPECTED && problems->problem[i].shot == -1 &&
+            strstr(problems->problem[i].text, file))
             return true;
     }
     return false;
@@ -221,24 +221,24 @@ static bool lists(const weft_session_faults *faults, const char *file)
 static void files_of_others_are_foreign_and_those_of_the_camera_are_not(void **state)
 {
     (void)state;
-    static const char *const foreign[] = {"session/notes.txt", "session/tv000_pv000/tl031_pl000_tv000_pv000.tif",
-                                          "session/tv000_pv000/tl000_pl000_tv000_pv000.jpg",
-                                          "session/.session.4711.json", "session/.photograph.tif"};
+    static const char *const unexpected[] = {"session/notes.txt", "session/tv000_pv000/tl031_pl000_tv000_pv000.tif",
+                                             "session/tv000_pv000/tl000_pl000_tv000_pv000.jpg",
+                                             "session/.session.4711.json", "session/.photograph.tif"};
     static const char *const known[] = {"session/tv000_pv000/tl000_pl000_tv000_pv000.original.nef",
                                         "session/.directory"};
-    enum { FOREIGN = sizeof foreign / sizeof *foreign };
+    enum { UNEXPECTED = sizeof unexpected / sizeof *unexpected };
     capture();
-    for (int i = 0; i < FOREIGN; i++)
-        scratch_store(foreign[i], "x", 1);
+    for (int i = 0; i < UNEXPECTED; i++)
+        scratch_store(unexpected[i], "x", 1);
     for (int i = 0; i < 2; i++)
         scratch_store(known[i], "x", 1);
-    weft_session_faults faults = check();
-    assert_int_equal(faults.count, FOREIGN);
-    for (int i = 0; i < FOREIGN; i++) {
-        if (!lists(&faults, foreign[i]))
-            fail_msg("%s", foreign[i]);
+    weft_session_problems problems = check();
+    assert_int_equal(problems.count, UNEXPECTED);
+    for (int i = 0; i < UNEXPECTED; i++) {
+        if (!lists(&problems, unexpected[i]))
+            fail_msg("%s", unexpected[i]);
     }
-    weft_session_faults_free(&faults);
+    weft_session_problems_free(&problems);
     assert_int_equal(capture(), 0);
     remove_session();
 }
@@ -268,7 +268,7 @@ int test_session_check(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_list_that_names_no_folder_is_refused),
         cmocka_unit_test(a_session_as_it_was_taken_is_sound),
-        cmocka_unit_test(every_fault_is_found_and_the_next_capture_takes_those_shots_alone),
+        cmocka_unit_test(every_problem_is_found_and_the_next_capture_takes_those_shots_alone),
         cmocka_unit_test(a_photograph_that_the_journal_knows_but_nobody_can_read_is_damaged),
         cmocka_unit_test(photographs_of_a_bracket_are_checked_like_any),
         cmocka_unit_test(a_bracket_that_the_journal_does_not_have_is_foreign),

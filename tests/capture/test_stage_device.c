@@ -140,7 +140,7 @@ static void faults_in_two_thousand_moves_give_no_wrong_pose(void **state)
     enum { MOVES = 2000, ONE_IN = 20 };
     static bench b;
     open_bench(&b, *state);
-    int wrong = 0, refused = 0, stays = 0, armed = 0;
+    int wrong = 0, refused = 0, viewpoints = 0, armed = 0;
     for (int i = 0; i < MOVES; i++) {
         weft_angles view = weft_ubo81_angles(i / 9 % 81), light = weft_ubo81_angles((int)random_below(81));
         weft_error error = {0};
@@ -157,17 +157,17 @@ static void faults_in_two_thousand_moves_give_no_wrong_pose(void **state)
             b.rig.stop(b.rig.device);
             continue;
         }
-        stays += moved;
+        viewpoints += moved;
         wrong += held && wrong_by(&b, view, light) > 0.02;
     }
     print_message("%d faults, %d wrong poses, %d moves refused, %d stays, %d times plugged in again\n", armed, wrong,
-                  refused, stays, b.fake.plugged);
+                  refused, viewpoints, b.fake.plugged);
     for (int fault = 1; fault < FAKE_FAULTS; fault++)
         assert_true(b.fake.stage.injected[fault] >= MOVES / ONE_IN / FAKE_FAULTS - 1);
     assert_int_equal(wrong, 0);
     assert_int_equal(refused, 0);
-    /* Where it lost its references, what follows is a new stay. */
-    assert_true(stays > (MOVES + 8) / 9);
+    /* Where it lost its references, what follows is a new viewpoint. */
+    assert_true(viewpoints > (MOVES + 8) / 9);
     close_bench(&b);
 }
 
@@ -184,7 +184,7 @@ static void lost_and_broken_answers_are_asked_for_again(void **state)
         assert_true(moved && wrong_by(&b, view, view) < 0.02);
         assert_int_equal(b.fake.stage.injected[faults[i]], 1);
     }
-    weft_controller_log log = weft_controller_said(b.controller);
+    weft_controller_log log = weft_controller_get_log(b.controller);
     assert_true(log.lost >= 5 && log.damaged >= 1 && log.stale >= 3);
     assert_int_equal(log.replugged, 0);
     close_bench(&b);
@@ -326,7 +326,7 @@ static void a_restart_between_move_and_photograph_is_noticed(void **state)
     assert_false(held);
     assert_int_equal(b.rig.move(b.rig.device, zenith, zenith, &moved, NULL), WEFT_OK);
     assert_true(moved && wrong_by(&b, zenith, zenith) < 0.02);
-    assert_int_equal(weft_controller_said(b.controller).restarted, 1);
+    assert_int_equal(weft_controller_get_log(b.controller).restarted, 1);
     close_bench(&b);
 }
 
@@ -441,7 +441,7 @@ static void a_session_with_faults_holds_no_wrong_pose(void **state)
         assert_true(session->record[i].taken);
         for (int axis = 0; axis < FAKE_AXES; axis++)
             assert_true(off_by(w.seen[i][axis], wanted[axis]) < 0.02);
-        homings = session->record[i].stay > homings ? session->record[i].stay : homings;
+        homings = session->record[i].viewpoint > homings ? session->record[i].viewpoint : homings;
     }
     print_message("%d photographs taken again, %d stays of 12 views\n", capture.summary.disturbed, homings + 1);
     assert_true(capture.summary.disturbed > 0 && homings > 12);

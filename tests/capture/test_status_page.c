@@ -41,7 +41,7 @@ static double drift_told(const char *page)
     return strtod(end + 1, NULL);
 }
 
-static void the_page_tells_photographs_stays_faults_and_the_drift_of_the_lamp(void **state)
+static void the_page_tells_photographs_viewpoints_faults_and_the_drift_of_the_lamp(void **state)
 {
     (void)state;
     char *page = page_of(0);
@@ -84,7 +84,7 @@ static void a_run_that_ends_early_says_why(void **state)
 int test_status_page(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_page_tells_photographs_stays_faults_and_the_drift_of_the_lamp),
+        cmocka_unit_test(the_page_tells_photographs_viewpoints_faults_and_the_drift_of_the_lamp),
         cmocka_unit_test(a_run_that_ends_early_says_why),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -107,11 +107,11 @@ static void remove_session(void)
     assert_int_equal(system("rm -rf session session.truth.h5 .session.truth.*"), 0);
 }
 
-static void a_line_follows_its_synced_photograph_and_a_stay_ends_synced(void **state)
+static void a_line_follows_its_synced_photograph_and_a_viewpoint_ends_synced(void **state)
 {
     (void)state;
     char expected[256] = "";
-    for (int stay = 0; stay < 5; stay++)
+    for (int viewpoint = 0; viewpoint < 5; viewpoint++)
         strcat(expected, "PRLPRLPRLPRLPRLvsJ");
     assert_string_equal(take_session(WEFT_OK), expected);
     small_session_assert_whole("session");
@@ -133,7 +133,7 @@ static void a_photograph_that_cannot_be_synced_has_no_line(void **state)
 int test_sync(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_line_follows_its_synced_photograph_and_a_stay_ends_synced),
+        cmocka_unit_test(a_line_follows_its_synced_photograph_and_a_viewpoint_ends_synced),
         cmocka_unit_test(a_photograph_that_cannot_be_synced_has_no_line),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -11,12 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXELS = 8, IMAGES = 5, STAYS = 5 };
+enum { TEXELS = 8, IMAGES = 5, VIEWPOINTS = 5 };
 
 static weft_session session;
 static weft_virtual_rig rig;
-static double rotation[STAYS][3][3], translation[STAYS][3], light[SMALL_SHOTS][3];
-static int stay[SMALL_SHOTS], image_shot[IMAGES];
+static double rotation[VIEWPOINTS][3][3], translation[VIEWPOINTS][3], light[SMALL_SHOTS][3];
+static int viewpoint[SMALL_SHOTS], image_shot[IMAGES];
 static float reflectance[IMAGES][TEXELS][TEXELS][3];
 
 static virtual_session make_request(void)
@@ -46,10 +46,10 @@ static int load(hid_t file, const char *name, hid_t type, size_t count, void *va
 static int load_truth(void)
 {
     hid_t file = H5Fopen("session.truth.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
-    int good = file >= 0 && load(file, "rotation", H5T_NATIVE_DOUBLE, STAYS * 9, rotation) &&
-               load(file, "translation_mm", H5T_NATIVE_DOUBLE, STAYS * 3, translation) &&
+    int good = file >= 0 && load(file, "rotation", H5T_NATIVE_DOUBLE, VIEWPOINTS * 9, rotation) &&
+               load(file, "translation_mm", H5T_NATIVE_DOUBLE, VIEWPOINTS * 3, translation) &&
                load(file, "light_mm", H5T_NATIVE_DOUBLE, SMALL_SHOTS * 3, light) &&
-               load(file, "stay", H5T_NATIVE_INT, SMALL_SHOTS, stay) &&
+               load(file, "stay", H5T_NATIVE_INT, SMALL_SHOTS, viewpoint) &&
                load(file, "image_shot", H5T_NATIVE_INT, IMAGES, image_shot) &&
                load(file, "reflectance", H5T_NATIVE_FLOAT, IMAGES * TEXELS * TEXELS * 3, reflectance);
     H5Fclose(file);
@@ -80,12 +80,12 @@ static void poses_and_lights_are_those_of_the_virtual_rig(void **state)
 {
     (void)state;
     for (int shot = 0; shot < SMALL_SHOTS; shot++) {
-        assert_int_equal(stay[shot], session.record[shot].stay);
-        weft_pose pose = weft_virtual_world_pose(&rig.world, session.shot[shot].view, stay[shot]);
-        assert_memory_equal(rotation[stay[shot]], pose.rotation, sizeof pose.rotation);
-        assert_true(translation[stay[shot]][0] == pose.translation.x &&
-                    translation[stay[shot]][2] == pose.translation.z);
-        weft_vec3 at = weft_virtual_world_light(&rig.world, session.shot[shot].light_driven, stay[shot]);
+        assert_int_equal(viewpoint[shot], session.record[shot].viewpoint);
+        weft_pose pose = weft_virtual_world_pose(&rig.world, session.shot[shot].view, viewpoint[shot]);
+        assert_memory_equal(rotation[viewpoint[shot]], pose.rotation, sizeof pose.rotation);
+        assert_true(translation[viewpoint[shot]][0] == pose.translation.x &&
+                    translation[viewpoint[shot]][2] == pose.translation.z);
+        weft_vec3 at = weft_virtual_world_light(&rig.world, session.shot[shot].light_driven, viewpoint[shot]);
         assert_true(light[shot][0] == at.x && light[shot][1] == at.y && light[shot][2] == at.z);
     }
 }
@@ -93,8 +93,8 @@ static void poses_and_lights_are_those_of_the_virtual_rig(void **state)
 /* Mean of pi BRDF cos over a texel by points x points samples. */
 static weft_rgb integrate_texel(int shot, int x, int y, int points)
 {
-    double(*r)[3] = rotation[stay[shot]];
-    const double *t = translation[stay[shot]];
+    double(*r)[3] = rotation[viewpoint[shot]];
+    const double *t = translation[viewpoint[shot]];
     weft_rgb sum = {0, 0, 0};
     for (int i = 0; i < points * points; i++) {
         double u = (x + (i % points + 0.5) / points) / TEXELS, v = 1 - (y + (i / points + 0.5) / points) / TEXELS;
@@ -151,7 +151,7 @@ static void reflectance_is_near_the_converged_mean_of_the_footprint(void **state
 static double photographed_texel(const uint16_t *samples, int shot, int x, int y)
 {
     enum { POINTS = 16 };
-    weft_pose pose = weft_virtual_world_pose(&rig.world, session.shot[shot].view, stay[shot]);
+    weft_pose pose = weft_virtual_world_pose(&rig.world, session.shot[shot].view, viewpoint[shot]);
     weft_homography homography = weft_homography_of_pose(&rig.world.camera, &pose);
     const weft_virtual_settings *s = &rig.world.settings;
     double electrons_per_step = s->full_well_electrons / (65535 - s->rig.black_level), sum = 0;

@@ -159,12 +159,12 @@ static int taken_by(const char *folder)
 
 static int faults_of(const char *folder)
 {
-    weft_session_faults faults;
+    weft_session_problems faults;
     weft_session session;
     assert_int_equal(weft_session_open(folder, &session, NULL), WEFT_OK);
     assert_int_equal(weft_session_check(&session, NULL, &faults, NULL), WEFT_OK);
     int count = faults.count;
-    weft_session_faults_free(&faults);
+    weft_session_problems_free(&faults);
     weft_session_free(&session);
     return count;
 }
@@ -172,12 +172,12 @@ static int faults_of(const char *folder)
 static int faults_beside(const char *folder)
 {
     weft_camera_list list;
-    weft_session_faults faults = {0};
+    weft_session_problems faults = {0};
     assert_int_equal(weft_camera_list_read(folder, &list, NULL), WEFT_OK);
     assert_int_equal(list.count, CAMERAS);
     assert_int_equal(weft_camera_folder_check(folder, &list, &faults, NULL), WEFT_OK);
     int count = faults.count;
-    weft_session_faults_free(&faults);
+    weft_session_problems_free(&faults);
     return count;
 }
 
@@ -483,7 +483,7 @@ static void cameras_share_the_pose_of_a_turntable(void **state)
     second.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_THETA] = 60;
     second.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_PHI] = 90;
     const weft_stage_parts parts = {
-        .axes = &first, .lamp = &lamp, .lamp_count = 1, .lamp_tolerance_rad = 4, .person = {NULL, turn}};
+        .axes = &first, .lamp = &lamp, .lamp_count = 1, .lamp_tolerance_rad = 4, .rig_operator = {NULL, turn}};
     weft_stage *stage, *beside;
     assert_int_equal(weft_stage_create(&parts, &stage, NULL), WEFT_OK);
     assert_int_equal(weft_stage_create_beside(stage, &second, &beside, NULL), WEFT_OK);

@@ -15,6 +15,7 @@ SIDE, BIN = 96, 2
 LENS = {"weft_lens": 1, "board": "none", "width": SIDE, "height": SIDE, "fx": 440, "fy": 440, "cx": (SIDE - 1) / 2,
         "cy": (SIDE - 1) / 2, "k1": 0, "k2": 0, "vignetting": [0, 0, 0], "standard_error": {}, "rms_px": 0, "used": [],
         "left_out": []}
+COMMAND = [WEFT, "capture", "--rig", "rig.conf", "--sample", "a scarf", "--plan", "plan.csv", "-o", "session", "--json"]
 PLAN = [(0, 0, 30, 0), (40, 90, 30, 0), (20, 180, 60, 90), (20, 90, 30, 0), (40, 90, 60, 90)]
 
 
@@ -62,8 +63,7 @@ def photograph(number):
 
 def run(stop_after=None, *more):
     """Serves a capture; returns its exit code, its notes and, for each photograph, where the axes stood."""
-    command = [WEFT, "capture", "--rig", "rig.conf", "--sample", "a scarf", "--plan", "plan.csv", "-o", "session", "--json"]
-    process = subprocess.Popen(command + list(more), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    process = subprocess.Popen(COMMAND + list(more), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                text=True)
     axes, taken, notes = {}, [], []
     for line in process.stdout:
@@ -117,9 +117,14 @@ code, notes, _, err = run(None, "--dry-run")
 assert code == 0 and any("no order of these poses takes less" in note for note in notes), (notes, err)
 assert not os.path.exists("session"), "a rehearsal wrote"
 
-# The person leaves after two photographs; the session goes on when he is back.
+# With standard input closed from the start nobody is waited for.
+closed = subprocess.run(COMMAND, preexec_fn=lambda: os.close(0), capture_output=True, text=True, timeout=60)
+assert closed.returncode == 3 and "Standard input is closed, so nobody can press Enter." in closed.stderr, closed
+assert not os.path.exists("session/journal.jsonl"), "a photograph was taken"
+
+# The operator leaves after two photographs; the session goes on when he is back.
 code, _, first, err = run(stop_after=2)
-assert code == 3 and "nobody is there" in err, (code, err)
+assert code == 3 and "Standard input is closed" in err, (code, err)
 assert len(first) == 2 and len(journal()) == 2
 code, notes, second, err = run()
 assert code == 0, err

@@ -67,7 +67,7 @@ expect_ok capture --rig rig.json --sample "$stitch" --plan plan.csv -o open --tr
 expect_ok info open
 grep -q "Open weave" out.log || fail "the session does not name its stitch"
 expect_ok capture --rig rig.json --sample "$stitch" --plan plan.csv -o open --truth-images 1 --truth-size 8
-expect_says "4 of 4 stays" register open --size 16x16 -o registered.btf.h5
+expect_says "4 of 4 viewpoints" register open --size 16x16 -o registered.btf.h5
 expect_ok compress registered.btf.h5 --lobes 1 -o registered.weft
 printf '{"rig": "virtual", "tiles_x": 3}' >tiles.json
 expect_error 1 "tiles_x" capture --rig tiles.json --sample "$stitch" --plan plan.csv -o tiles

@@ -234,7 +234,7 @@ static void compare_with_reference(tally *t)
 {
     const double noise = 0.005;
     weft_session session, reference;
-    weft_session_faults faults;
+    weft_session_problems faults;
     double worst = 0, nearest_other = INFINITY;
     if (weft_session_open("session", &session, NULL) != WEFT_OK ||
         weft_session_open("reference", &reference, NULL) != WEFT_OK ||
@@ -256,7 +256,7 @@ static void compare_with_reference(tally *t)
            worst, nearest_other);
     if (nearest_other < 2 * noise)
         fail("the comparison could not tell a photograph of another pose");
-    weft_session_faults_free(&faults);
+    weft_session_problems_free(&faults);
     weft_session_free(&reference);
     weft_session_free(&session);
 }

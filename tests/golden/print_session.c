@@ -58,8 +58,8 @@ static weft_code print_photograph(FILE *out, const weft_session *session, int sh
     const weft_shot_record *record = &session->record[shot];
     char path[PATH_MAX];
     weft_session_photograph_path(session, shot, path, sizeof path);
-    fprintf(out, "  %s stay %d exposure_s %.9g bytes %llu crc32 %u\n", path + strlen(session->folder) + 1, record->stay,
-            record->exposure_s, (unsigned long long)record->bytes, record->crc32);
+    fprintf(out, "  %s stay %d exposure_s %.9g bytes %llu crc32 %u\n", path + strlen(session->folder) + 1,
+            record->viewpoint, record->exposure_s, (unsigned long long)record->bytes, record->crc32);
     WEFT_TRY(weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, pixels, error));
     print_pixels(out, &session->camera, pixels);
     for (int i = 0; i < record->bracket_count; i++) {

@@ -286,7 +286,7 @@ static void two_photographs_of_one_pair_of_directions_are_refused(void **state)
     folder_remove(&folder);
 }
 
-/* Of the doubled ones the first by its name stays, a listed one that is not there never. */
+/* Of duplicates the first by its name stays, a listed one that is not there never. */
 static void doubled_photographs_are_left_out_on_demand(void **state)
 {
     (void)state;

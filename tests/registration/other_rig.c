@@ -417,8 +417,11 @@ static void take_view(const other_rig *rig, weft_session *session, int view, sig
     for (int light = 0; light < OTHER_RIG_LIGHTS; light++) {
         int shot = view * OTHER_RIG_LIGHTS + light;
         char path[512], parent[512];
-        weft_shot_record record = {
-            .taken = true, .stay = view, .exposure_s = 0.9 / sqrt(towards(light_deg[light]).z), .bytes = 1, .crc32 = 1};
+        weft_shot_record record = {.taken = true,
+                                   .viewpoint = view,
+                                   .exposure_s = 0.9 / sqrt(towards(light_deg[light]).z),
+                                   .bytes = 1,
+                                   .crc32 = 1};
         expose(rig, picture, shot, record.exposure_s, raw);
         weft_session_photograph_path(session, shot, path, sizeof path);
         snprintf(parent, sizeof parent, "%s", path);

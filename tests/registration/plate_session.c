@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const plate_mishaps plate_no_mishaps = {-1, -1, -1};
+const plate_faults plate_no_faults = {-1, -1, -1};
 
 static const double camera_mm = 600, light_mm = 650;
 static const weft_angles view_of[PLATE_SESSION_VIEWS] = {{0, 0}, {0.7, 1}, {1.1, 4}};
@@ -61,9 +61,9 @@ static void expose(const weft_session *s, const float *even, const weft_pose *po
     }
 }
 
-static void take_view(weft_session *s, int view, const plate_mishaps *mishaps)
+static void take_view(weft_session *s, int view, const plate_faults *faults)
 {
-    plate_scene scene = {s->target, 0, 0.002, 10, view == mishaps->covered_view ? 2 : 0, diffuser};
+    plate_scene scene = {s->target, 0, 0.002, 10, view == faults->covered_view ? 2 : 0, diffuser};
     weft_pose pose = plate_jittered_pose(view_of[view], camera_mm, (unsigned)view + 20);
     float *even = plate_photograph(&scene, &s->camera, &pose, (unsigned)view + 1);
     uint16_t *raw = malloc(sizeof *raw * PLATE_SESSION_SIZE * PLATE_SESSION_SIZE * 3);
@@ -72,11 +72,11 @@ static void take_view(weft_session *s, int view, const plate_mishaps *mishaps)
         int shot = view * PLATE_SESSION_LIGHTS + light;
         char path[512], parent[512];
         weft_shot_record record = {.taken = true,
-                                   .stay = view,
-                                   .exposure_s = shot == mishaps->overexposed ? 2.2 : 0.9,
+                                   .viewpoint = view,
+                                   .exposure_s = shot == faults->overexposed ? 2.2 : 0.9,
                                    .bytes = 1,
                                    .crc32 = 1};
-        if (shot == mishaps->untaken)
+        if (shot == faults->untaken)
             continue;
         expose(s, even, &pose, light_of[light], record.exposure_s, raw);
         weft_session_photograph_path(s, shot, path, sizeof path);
@@ -90,13 +90,13 @@ static void take_view(weft_session *s, int view, const plate_mishaps *mishaps)
     free(even);
 }
 
-void plate_session_write(const char *folder, const plate_mishaps *mishaps)
+void plate_session_write(const char *folder, const plate_faults *faults)
 {
     weft_session session = describe(folder);
     assert_int_equal(weft_make_folder(folder, NULL), WEFT_OK);
     assert_int_equal(weft_session_create(&session, NULL), WEFT_OK);
     for (int view = 0; view < PLATE_SESSION_VIEWS; view++)
-        take_view(&session, view, mishaps);
+        take_view(&session, view, faults);
     weft_session_free(&session);
 }
 

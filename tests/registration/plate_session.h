@@ -15,16 +15,16 @@ enum {
 #define PLATE_SESSION_SAMPLE 0.4
 
 /* What goes wrong with a session. */
-typedef struct plate_mishaps {
+typedef struct plate_faults {
     int covered_view; /* its target is covered; -1: none */
     int untaken;      /* shot that is not taken; -1: none */
     int overexposed;  /* shot whose white patches are saturated; -1: none */
-} plate_mishaps;
+} plate_faults;
 
-extern const plate_mishaps plate_no_mishaps;
+extern const plate_faults plate_no_faults;
 
 /* Writes the session into the new folder `folder` of the current one. Fails the running test where it cannot. */
-void plate_session_write(const char *folder, const plate_mishaps *mishaps);
+void plate_session_write(const char *folder, const plate_faults *faults);
 
 /* Path of a photograph of the session. */
 void plate_session_photograph(const char *folder, int shot, char path[512]);

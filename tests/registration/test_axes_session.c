@@ -16,7 +16,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { STAYS = 4, TEXELS = 32, IMAGES = 4 };
+enum { VIEWPOINTS = 4, TEXELS = 32, IMAGES = 4 };
 
 static const char night_plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
                                  "45,120,0,0\n30,120,30,90\n45,120,50,200\n30,240,70,300\n";
@@ -118,10 +118,10 @@ typedef struct outcome {
     double shift_mm;    /* of the target from where it was promised, the largest */
 } outcome;
 
-static double angle_to_truth_deg(const weft_dataset *dataset, int stay, int view)
+static double angle_to_truth_deg(const weft_dataset *dataset, int viewpoint, int view)
 {
-    double(*r)[3] = c.real.rotation[stay];
-    const double *t = c.real.translation_mm[stay];
+    double(*r)[3] = c.real.rotation[viewpoint];
+    const double *t = c.real.translation_mm[viewpoint];
     weft_vec3 at = {-(r[0][0] * t[0] + r[1][0] * t[1] + r[2][0] * t[2]),
                     -(r[0][1] * t[0] + r[1][1] * t[1] + r[2][1] * t[2]),
                     -(r[0][2] * t[0] + r[1][2] * t[1] + r[2][2] * t[2])};
@@ -147,18 +147,18 @@ static outcome register_night(const char *name)
         for (int i = 0; i < errors.count[image]; i++)
             pool[count++] = errors.error[(size_t)image * (size_t)errors.capacity + (size_t)i];
     o.reflectance = weft_quantile(pool, count, 0.5);
-    o.failed = registration.failed_stays;
-    for (int stay = 0; stay < STAYS; stay++) {
-        double angle =
-            angle_to_truth_deg(dataset, registration.survey.stay[stay].stay, registration.survey.stay[stay].view);
-        o.view_deg += angle * angle / STAYS;
-        o.shift_mm = fmax(o.shift_mm, registration.pose[stay].shift_mm);
+    o.failed = registration.failed_viewpoints;
+    for (int viewpoint = 0; viewpoint < VIEWPOINTS; viewpoint++) {
+        double angle = angle_to_truth_deg(dataset, registration.survey.viewpoint[viewpoint].viewpoint,
+                                          registration.survey.viewpoint[viewpoint].view);
+        o.view_deg += angle * angle / VIEWPOINTS;
+        o.shift_mm = fmax(o.shift_mm, registration.pose[viewpoint].shift_mm);
     }
     o.view_deg = sqrt(o.view_deg);
     print_message(
         "%s: %d of %d views failed, reflectance off by %.2f %%, views by %.3f degrees, target %.2f mm from the "
         "promise\n",
-        name, o.failed, STAYS, 100 * o.reflectance, o.view_deg, o.shift_mm);
+        name, o.failed, VIEWPOINTS, 100 * o.reflectance, o.view_deg, o.shift_mm);
     free(pool);
     truth_errors_free(&errors);
     weft_dataset_close(dataset);
@@ -173,8 +173,8 @@ static void a_calibrated_night_is_as_good_as_the_truth(void **state)
     weft_virtual_world rest = c.rig.world;
     rest.settings.stay_rotation_deg = rest.settings.stay_translation_mm = 0;
     weft_motion *recorded = c.night.pose;
-    weft_motion known[STAYS];
-    for (int shot = 0; shot < STAYS; shot++) {
+    weft_motion known[VIEWPOINTS];
+    for (int shot = 0; shot < VIEWPOINTS; shot++) {
         weft_pose pose = weft_virtual_world_pose(&rest, c.night.shot[shot].view, 0);
         known[shot] = weft_motion_of_pose(&pose);
     }
@@ -195,7 +195,7 @@ static void the_axes_as_specified_would_not_do(void **state)
     (void)state;
     weft_registration_settings settings = weft_registration_defaults(&c.night);
     double worst = 0;
-    for (int shot = 0; shot < STAYS; shot++) {
+    for (int shot = 0; shot < VIEWPOINTS; shot++) {
         weft_angles view = c.night.shot[shot].view;
         weft_pose there = weft_virtual_world_pose(&c.rig.world, view, shot);
         weft_pose specified = weft_pose_of_view(view, c.night.camera_distance_mm);

@@ -166,7 +166,7 @@ static void each_camera_has_frames_brackets_and_colours_of_its_own(void **state)
     assert_int_equal(count, CAMERAS);
     for (int i = 0; i < count; i++) {
         const weft_session *s = &sessions[i];
-        weft_session_faults faults;
+        weft_session_problems faults;
         assert_int_equal(weft_session_frame_count(s), 3 * FRAMES);
         for (int k = 0; k < 3 * FRAMES; k++)
             assert_true(s->frame[k].taken);
@@ -177,7 +177,7 @@ static void each_camera_has_frames_brackets_and_colours_of_its_own(void **state)
         assert_float_equal(s->colour.matrix[0][1], b.colour[i].matrix[0][1], 1e-9);
         expect_ok(weft_session_check(s, NULL, &faults, &error), &error);
         assert_int_equal(faults.count, 0);
-        weft_session_faults_free(&faults);
+        weft_session_problems_free(&faults);
     }
     assert_true(sessions[0].frame[0].crc32 != sessions[1].frame[0].crc32);
     print_message("brackets: %d and %d photographs more\n", brackets[0], brackets[1]);

@@ -123,7 +123,7 @@ static void hold(const other_rig *rig, const floors *most)
     reflectance = reflectance_error(&tenth);
     print_message("%.4f texels median, %.4f worst; reflectance %.2f %%, a tenth beyond %.2f %%\n", median, worst,
                   100 * reflectance, 100 * tenth);
-    assert_true(registration.found.bend.stays == OTHER_RIG_VIEWS);
+    assert_true(registration.found.bend.viewpoints == OTHER_RIG_VIEWS);
     assert_true(median < most->median_texels);
     assert_true(worst < most->worst_texels);
     assert_true(bend < most->bend_mm);

@@ -2,7 +2,7 @@
  * whole numbers of 8 bits; the room under test bends sRGB by a polynomial. */
 #include "registration/lamp/exposure.h"
 #include "registration/lamp/lamp.h"
-#include "registration/photographs/twin.h"
+#include "registration/photographs/exposure_pairs.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
@@ -273,23 +273,24 @@ static void round_numbers_are_thirds_of_a_stop(void **state)
     assert_near(weft_exif_exposure(&slow), 0, 0);
 }
 
-/* A series of three, and one that is blurred, whose darker twin is sharp. */
+/* A series of three, and one that is blurred, whose darker darker is sharp. */
 static void the_darker_of_a_pair_is_no_image(void **state)
 {
     (void)state;
     weft_photographs_photograph photograph[5] = {
         {.name = "a"}, {.name = "b"}, {.name = "c"}, {.name = "d", .remark = "blurred"}, {.name = "e"}};
     weft_exposure_pair pair[] = {{2, 0, 1}, {0, 4, 1}, {3, 1, 1}};
-    weft_hand hand = {.count = 5, .photograph = photograph, .pair_count = 3, .pair = pair};
-    weft_photographs_leave_out_twins(&hand);
+    weft_photograph_set set = {.count = 5, .photograph = photograph, .pair_count = 3, .pair = pair};
+    weft_photographs_leave_out_darker(&set);
     const bool used[] = {false, true, true, false, false};
     for (int i = 0; i < 5; i++)
         assert_int_equal(weft_photographs_used(&photograph[i]), used[i]);
-    assert_true(photograph[0].is_twin && photograph[4].is_twin && !photograph[3].is_twin && !photograph[1].is_twin);
+    assert_true(photograph[0].is_darker_of_pair && photograph[4].is_darker_of_pair &&
+                !photograph[3].is_darker_of_pair && !photograph[1].is_darker_of_pair);
     assert_non_null(strstr(photograph[4].remark, "it is 'a', darker"));
-    assert_int_equal(weft_photographs_darker_twin(&hand, 2), 0);
-    assert_int_equal(weft_photographs_darker_twin(&hand, 0), 4);
-    assert_int_equal(weft_photographs_darker_twin(&hand, 4), -1);
+    assert_int_equal(weft_photographs_darker_of_pair(&set, 2), 0);
+    assert_int_equal(weft_photographs_darker_of_pair(&set, 0), 4);
+    assert_int_equal(weft_photographs_darker_of_pair(&set, 4), -1);
 }
 
 static void the_darker_of_a_pair_tells_what_is_clipped(void **state)

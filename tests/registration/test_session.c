@@ -95,7 +95,7 @@ static double worst_error(int shot)
 static void a_diffuser_comes_out_as_its_reflectance_times_the_cosine(void **state)
 {
     (void)state;
-    plate_session_write("good", &plate_no_mishaps);
+    plate_session_write("good", &plate_no_faults);
     assert_int_equal(run("good", false, NULL), WEFT_OK);
     read_dataset();
     assert_int_equal(registration.image_count, PLATE_SESSION_SHOTS);
@@ -112,7 +112,7 @@ static void bad_photographs_are_named_and_masked_and_the_rest_goes_on(void **sta
     (void)state;
     char path[4][512];
     const int bad[4] = {0, 4, 5, 7};
-    plate_session_write("bad", &plate_no_mishaps);
+    plate_session_write("bad", &plate_no_faults);
     for (int i = 0; i < 4; i++)
         plate_session_photograph("bad", bad[i], path[i]);
     assert_int_equal(unlink(path[0]), 0);
@@ -138,11 +138,11 @@ static void bad_photographs_are_named_and_masked_and_the_rest_goes_on(void **sta
 static void a_view_with_a_covered_target_fails_alone(void **state)
 {
     (void)state;
-    const plate_mishaps mishaps = {1, -1, -1};
-    plate_session_write("covered", &mishaps);
+    const plate_faults faults = {1, -1, -1};
+    plate_session_write("covered", &faults);
     assert_int_equal(run("covered", false, NULL), WEFT_OK);
     read_dataset();
-    assert_int_equal(registration.failed_stays, 1);
+    assert_int_equal(registration.failed_viewpoints, 1);
     assert_int_equal(registration.pose[1].source, WEFT_POSE_FAILED);
     for (int shot = 0; shot < PLATE_SESSION_SHOTS; shot++)
         assert_true(shot / PLATE_SESSION_LIGHTS == 1 ? all_masked(shot, WEFT_MASK_MISSING) : is_registered(shot));
@@ -152,8 +152,8 @@ static void a_view_with_a_covered_target_fails_alone(void **state)
 static void saturated_white_patches_are_replaced_by_the_light_of_other_photographs(void **state)
 {
     (void)state;
-    const plate_mishaps mishaps = {-1, -1, 3};
-    plate_session_write("bright", &mishaps);
+    const plate_faults faults = {-1, -1, 3};
+    plate_session_write("bright", &faults);
     assert_int_equal(run("bright", false, NULL), WEFT_OK);
     read_dataset();
     assert_int_equal(registration.estimated_whites, 1);
@@ -180,7 +180,7 @@ static void darken_blue(const char *folder, int shot)
 static void a_photograph_without_light_in_a_channel_does_not_sink_the_rest(void **state)
 {
     (void)state;
-    plate_session_write("red", &plate_no_mishaps);
+    plate_session_write("red", &plate_no_faults);
     darken_blue("red", 4);
     assert_int_equal(run("red", false, NULL), WEFT_OK);
     read_dataset();
@@ -210,14 +210,15 @@ static void dim(const char *folder, int shot, double gain)
 static void a_lamp_that_drifts_is_taken_out_and_told(void **state)
 {
     (void)state;
-    plate_session_write("aged", &plate_no_mishaps);
+    plate_session_write("aged", &plate_no_faults);
     for (int shot = 6; shot < 9; shot++)
         dim("aged", shot, 0.9);
     assert_int_equal(run("aged", false, NULL), WEFT_OK);
     read_dataset();
-    double first = weft_stay_white_of(&registration, 0).level[1], last = weft_stay_white_of(&registration, 2).level[1];
+    double first = weft_viewpoint_white_of(&registration, 0).level[1],
+           last = weft_viewpoint_white_of(&registration, 2).level[1];
     weft_lamp_drift drift = weft_lamp_drift_of(&registration);
-    assert_int_equal(drift.stays, PLATE_SESSION_VIEWS);
+    assert_int_equal(drift.viewpoints, PLATE_SESSION_VIEWS);
     assert_true(fabs(first / registration.white[0].level[1] - 1) < 0.02);
     assert_true(fabs(last / first - 0.9) < 0.01);
     /* Against the mean of 1, 1 and 0.9. */
@@ -230,8 +231,8 @@ static void a_lamp_that_drifts_is_taken_out_and_told(void **state)
 static void an_unfinished_session_is_registered_only_when_allowed(void **state)
 {
     (void)state;
-    const plate_mishaps mishaps = {-1, 6, -1};
-    plate_session_write("unfinished", &mishaps);
+    const plate_faults faults = {-1, 6, -1};
+    plate_session_write("unfinished", &faults);
     assert_int_equal(run("unfinished", false, NULL), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "1 of 9"));
     assert_int_equal(run("unfinished", true, NULL), WEFT_OK);
@@ -245,7 +246,7 @@ static void when_nothing_can_be_used_the_command_fails_and_leaves_no_file(void *
 {
     (void)state;
     char path[512];
-    plate_session_write("empty", &plate_no_mishaps);
+    plate_session_write("empty", &plate_no_faults);
     for (int shot = 0; shot < PLATE_SESSION_SHOTS; shot++) {
         plate_session_photograph("empty", shot, path);
         assert_int_equal(unlink(path), 0);
@@ -259,7 +260,7 @@ static void when_nothing_can_be_used_the_command_fails_and_leaves_no_file(void *
 static void a_session_without_photographs_is_refused(void **state)
 {
     (void)state;
-    plate_session_write("none", &plate_no_mishaps);
+    plate_session_write("none", &plate_no_faults);
     scratch_store("none/journal.jsonl", "", 0);
     assert_int_equal(run("none", true, NULL), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "no photograph"));

@@ -15,7 +15,7 @@
 /* The same views by one camera, and by two that share them, each with errors of its own; held against the truth of
  * each. */
 
-enum { SHOTS = 10, STAYS = 5, TEXELS = 32, VALUES = TEXELS * TEXELS * 3 };
+enum { SHOTS = 10, VIEWPOINTS = 5, TEXELS = 32, VALUES = TEXELS * TEXELS * 3 };
 
 static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
                            "10,0,0,0\n45,130,0,0\n"
@@ -28,8 +28,8 @@ typedef struct outcome {
     int count;
     weft_session *sessions;
     weft_registration registration[2];
-    double warp[STAYS], *error; /* of positions, in texels; relative, of samples */
-    int stays, errors;
+    double warp[VIEWPOINTS], *error; /* of positions, in texels; relative, of samples */
+    int viewpoints, errors;
 } outcome;
 
 static outcome one, two;
@@ -86,10 +86,10 @@ static void compare(const char *folder, int camera, int first_image, weft_datase
     const weft_registration *r = &o->registration[camera];
     snprintf(path, sizeof path, "%s.%d.truth.h5", folder, camera);
     sound(truth_read(path, &real, &error), &error);
-    for (int i = 0; i < r->survey.stay_count; i++) {
+    for (int i = 0; i < r->survey.viewpoint_count; i++) {
         assert_int_equal(r->pose[i].source, WEFT_POSE_DRAWING);
-        o->warp[o->stays++] = truth_warp_error_texels(&real, &o->sessions[camera].camera, r->survey.stay[i].stay,
-                                                      &r->pose[i].homography, TEXELS);
+        o->warp[o->viewpoints++] = truth_warp_error_texels(
+            &real, &o->sessions[camera].camera, r->survey.viewpoint[i].viewpoint, &r->pose[i].homography, TEXELS);
     }
     number_as_in_the_dataset(&real, first_image);
     sound(truth_compare_reflectance(&real, dataset, &errors, &error), &error);
@@ -119,13 +119,13 @@ static void register_and_compare(const char *folder, outcome *o)
     sound(weft_register_cameras(o->sessions, o->count, path, settings, NULL, o->registration, &error), &error);
     sound(weft_dataset_open(path, &dataset, &error), &error);
     assert_int_equal(weft_dataset_get_layout(dataset)->image_count, SHOTS);
-    assert_int_equal(weft_dataset_get_layout(dataset)->view_count, STAYS);
+    assert_int_equal(weft_dataset_get_layout(dataset)->view_count, VIEWPOINTS);
     for (int i = 0, image = 0; i < o->count; i++) {
         compare(folder, i, image, dataset, o);
         image += o->sessions[i].shot_count;
     }
     weft_dataset_close(dataset);
-    assert_int_equal(o->stays, STAYS);
+    assert_int_equal(o->viewpoints, VIEWPOINTS);
 }
 
 static int take_and_register(void **state)
@@ -160,7 +160,7 @@ static void two_cameras_err_as_one_does(void **state)
     (void)state;
     assert_int_equal(one.count, 1);
     assert_int_equal(two.count, 2);
-    double warp_one = weft_quantile(one.warp, STAYS, 1), warp_two = weft_quantile(two.warp, STAYS, 1);
+    double warp_one = weft_quantile(one.warp, VIEWPOINTS, 1), warp_two = weft_quantile(two.warp, VIEWPOINTS, 1);
     double of_one = weft_quantile(one.error, one.errors, 0.5), of_two = weft_quantile(two.error, two.errors, 0.5);
     double high_one = weft_quantile(one.error, one.errors, 0.95), high_two = weft_quantile(two.error, two.errors, 0.95);
     print_message("one: %.4f texels in the worst view, samples %.2f %% median, %.2f %% at the 95th percentile\n",

@@ -12,7 +12,7 @@
 
 /* A session of the virtual rig, registered without its truth, then held against it. */
 
-enum { SHOTS = 18, STAYS = 6, TEXELS = 64, TRUTH_IMAGES = 6, VALUES = TEXELS * TEXELS * 3 };
+enum { SHOTS = 18, VIEWPOINTS = 6, TEXELS = 64, TRUTH_IMAGES = 6, VALUES = TEXELS * TEXELS * 3 };
 
 static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
                            "10,0,0,0\n45,120,0,0\n75,240,0,0\n"
@@ -58,19 +58,21 @@ static int leave(void **state)
 static void poses_agree_with_the_truth(void **state)
 {
     (void)state;
-    double error[STAYS];
-    assert_int_equal(registration.survey.stay_count, STAYS);
-    assert_int_equal(real.stay_count, STAYS);
-    for (int stay = 0; stay < STAYS; stay++) {
-        error[stay] = truth_warp_error_texels(&real, &session.camera, registration.survey.stay[stay].stay,
-                                              &registration.pose[stay].homography, TEXELS);
-        assert_int_equal(registration.pose[stay].source, WEFT_POSE_DRAWING);
-        print_message("view %.0f degrees: %.4f texels\n",
-                      weft_deg_of_rad(registration.survey.view[registration.survey.stay[stay].view].theta_rad),
-                      error[stay]);
+    double error[VIEWPOINTS];
+    assert_int_equal(registration.survey.viewpoint_count, VIEWPOINTS);
+    assert_int_equal(real.viewpoint_count, VIEWPOINTS);
+    for (int viewpoint = 0; viewpoint < VIEWPOINTS; viewpoint++) {
+        error[viewpoint] =
+            truth_warp_error_texels(&real, &session.camera, registration.survey.viewpoint[viewpoint].viewpoint,
+                                    &registration.pose[viewpoint].homography, TEXELS);
+        assert_int_equal(registration.pose[viewpoint].source, WEFT_POSE_DRAWING);
+        print_message(
+            "view %.0f degrees: %.4f texels\n",
+            weft_deg_of_rad(registration.survey.view[registration.survey.viewpoint[viewpoint].view].theta_rad),
+            error[viewpoint]);
     }
-    assert_true(weft_quantile(error, STAYS, 0.5) < 0.01);
-    assert_true(weft_quantile(error, STAYS, 1) < 0.03);
+    assert_true(weft_quantile(error, VIEWPOINTS, 0.5) < 0.01);
+    assert_true(weft_quantile(error, VIEWPOINTS, 1) < 0.03);
 }
 
 /* Nor is the lens that the session calibrates taken for darker at its rim: 0.2 % is that of the white patches. */
@@ -82,7 +84,7 @@ static void a_flat_plate_is_found_flat(void **state)
     const double unit = found->unit_mm * found->unit_mm, loss = (v->r2 + v->r4 * v->reach) * v->reach;
     print_message("bend %.4f %.4f %.4f mm, vignetting %.4f +- %.4f\n", found->bend.xx * unit, found->bend.xy * unit,
                   found->bend.yy * unit, loss, v->standard_error);
-    assert_int_equal(found->stays, STAYS);
+    assert_int_equal(found->viewpoints, VIEWPOINTS);
     assert_true(fabs(found->bend.xx) * unit < 0.01);
     assert_true(fabs(found->bend.xy) * unit < 0.01);
     assert_true(fabs(found->bend.yy) * unit < 0.01);

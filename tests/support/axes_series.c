@@ -28,15 +28,15 @@ weft_virtual_settings axes_off_settings(void)
     return s;
 }
 
-void axes_see(const weft_virtual_world *world, weft_angles view, int stay, weft_axes_shot *shot)
+void axes_see(const weft_virtual_world *world, weft_angles view, int viewpoint, weft_axes_shot *shot)
 {
-    weft_pose pose = weft_virtual_world_pose(world, view, stay);
+    weft_pose pose = weft_virtual_world_pose(world, view, viewpoint);
     weft_homography map = weft_homography_of_pose(&world->camera, &pose);
     *shot = (weft_axes_shot){.name = "shot", .turns = weft_turns_of_view(view)};
     for (int i = 0; i < WEFT_AXES_POINTS; i++) {
         double x = i % 2 ? 27 : -27, y = i / 2 ? 27 : -27;
         weft_pixel at = weft_camera_distort(&world->camera, weft_homography_apply(&map, x, y));
-        weft_vec3 noise = weft_random_normal3(world->seed, WEFT_RANDOM_NOISE, 16 * (uint64_t)stay + (uint64_t)i);
+        weft_vec3 noise = weft_random_normal3(world->seed, WEFT_RANDOM_NOISE, 16 * (uint64_t)viewpoint + (uint64_t)i);
         shot->point[i] = (weft_axes_point){{x, y}, {at.x + 0.01 * noise.x, at.y + 0.01 * noise.y}};
     }
 }

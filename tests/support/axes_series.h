@@ -21,8 +21,8 @@ weft_angles axes_degrees(double theta_deg, double phi_deg);
 /* A rig that is off by half a degree and a millimetre, and repeats as the virtual one does. */
 weft_virtual_settings axes_off_settings(void);
 
-/* Points of the target in the shot of a stay, with noise of 0.01 pixels. */
-void axes_see(const weft_virtual_world *world, weft_angles view, int stay, weft_axes_shot *shot);
+/* Points of the target in the shot of a viewpoint, with noise of 0.01 pixels. */
+void axes_see(const weft_virtual_world *world, weft_angles view, int viewpoint, weft_axes_shot *shot);
 
 /* The views of assets/plans/calibration.csv, in order. Pure. */
 weft_angles axes_series_view(int index);

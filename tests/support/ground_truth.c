@@ -56,7 +56,7 @@ static bool load_counts(hid_t file, truth *t)
     if (rotation[0] > most || light[0] > most || reflectance[0] > light[0] || reflectance[1] > most_texels ||
         reflectance[1] < 1)
         return false;
-    t->stay_count = (int)rotation[0];
+    t->viewpoint_count = (int)rotation[0];
     t->shot_count = (int)light[0];
     t->image_count = (int)reflectance[0];
     t->size = (int)reflectance[1];
@@ -66,8 +66,8 @@ static bool load_counts(hid_t file, truth *t)
 static weft_code allocate(truth *t, weft_error *error)
 {
     size_t values = (size_t)t->image_count * (size_t)t->size * (size_t)t->size;
-    t->rotation = calloc((size_t)t->stay_count, sizeof *t->rotation);
-    t->translation_mm = calloc((size_t)t->stay_count, sizeof *t->translation_mm);
+    t->rotation = calloc((size_t)t->viewpoint_count, sizeof *t->rotation);
+    t->translation_mm = calloc((size_t)t->viewpoint_count, sizeof *t->translation_mm);
     t->light_mm = calloc((size_t)t->shot_count, sizeof *t->light_mm);
     t->image_shot = calloc((size_t)t->image_count, sizeof *t->image_shot);
     t->reflectance = calloc(values, sizeof *t->reflectance);
@@ -85,10 +85,10 @@ static bool load_camera(hid_t file, weft_camera *camera)
 
 static bool load_arrays(hid_t file, truth *t)
 {
-    size_t stays = (size_t)t->stay_count, images = (size_t)t->image_count, side = (size_t)t->size;
+    size_t viewpoints = (size_t)t->viewpoint_count, images = (size_t)t->image_count, side = (size_t)t->size;
     bool good = load_camera(file, &t->camera) && load_number(file, "opening_mm", &t->opening_mm) &&
-                load(file, "rotation", H5T_NATIVE_DOUBLE, stays * 9, t->rotation) &&
-                load(file, "translation_mm", H5T_NATIVE_DOUBLE, stays * 3, t->translation_mm) &&
+                load(file, "rotation", H5T_NATIVE_DOUBLE, viewpoints * 9, t->rotation) &&
+                load(file, "translation_mm", H5T_NATIVE_DOUBLE, viewpoints * 3, t->translation_mm) &&
                 load(file, "light_mm", H5T_NATIVE_DOUBLE, (size_t)t->shot_count * 3, t->light_mm) &&
                 load(file, "image_shot", H5T_NATIVE_INT, images, t->image_shot) &&
                 load(file, "reflectance", H5T_NATIVE_FLOAT, images * side * side * 3, t->reflectance);
@@ -127,13 +127,13 @@ void truth_free(truth *t)
 
 /* ---- Places ---- */
 
-double truth_warp_error_texels(const truth *t, const weft_camera *calibrated, int stay, const weft_homography *found,
-                               int texels)
+double truth_warp_error_texels(const truth *t, const weft_camera *calibrated, int viewpoint,
+                               const weft_homography *found, int texels)
 {
     enum { grid = 9 };
-    const double *place = t->translation_mm[stay];
+    const double *place = t->translation_mm[viewpoint];
     weft_pose pose = {.translation = {place[0], place[1], place[2]}};
-    memcpy(pose.rotation, t->rotation[stay], sizeof pose.rotation);
+    memcpy(pose.rotation, t->rotation[viewpoint], sizeof pose.rotation);
     weft_homography real = weft_homography_of_pose(&t->camera, &pose);
     weft_homography inverse = weft_homography_inverse(found);
     double sum = 0;

@@ -9,9 +9,9 @@
 typedef struct truth {
     weft_camera camera; /* without the size of its photographs */
     double opening_mm;
-    int stay_count, shot_count, image_count, size;
-    double (*rotation)[3][3];    /* [stay] */
-    double (*translation_mm)[3]; /* [stay] */
+    int viewpoint_count, shot_count, image_count, size;
+    double (*rotation)[3][3];    /* [viewpoint] */
+    double (*translation_mm)[3]; /* [viewpoint] */
     double (*light_mm)[3];       /* [shot] position in the frame of the plate */
     int *image_shot;             /* [image] the shot whose reflectance is known */
     float (*reflectance)[3];     /* [image][size][size] times the cosine at each texel; row 0 is the top row */
@@ -23,8 +23,8 @@ void truth_free(truth *t);
 
 /* RMS over the opening, in units of a `texels`-th of its side, of where `found` (plate mm to pixels undistorted by the
  * camera as `calibrated`) puts the points that truly lie at a place. Errors of the calibration are in it. Pure. */
-double truth_warp_error_texels(const truth *t, const weft_camera *calibrated, int stay, const weft_homography *found,
-                               int texels);
+double truth_warp_error_texels(const truth *t, const weft_camera *calibrated, int viewpoint,
+                               const weft_homography *found, int texels);
 
 /* The relative error of every sample that is not masked and truly not dim (base/numeric/error_summary.h). */
 typedef struct truth_errors {

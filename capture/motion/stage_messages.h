@@ -1,6 +1,6 @@
 /* What a controller answers, in words. */
-#ifndef WEFT_CAPTURE_MOTION_STAGE_WORDS_H
-#define WEFT_CAPTURE_MOTION_STAGE_WORDS_H
+#ifndef WEFT_CAPTURE_MOTION_STAGE_MESSAGES_H
+#define WEFT_CAPTURE_MOTION_STAGE_MESSAGES_H
 
 #include "capture/axes/axes.h"
 #include "capture/firmware/protocol.h"

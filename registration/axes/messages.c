@@ -1,4 +1,4 @@
-#include "registration/axes/words.h"
+#include "registration/axes/messages.h"
 
 static const char *const term_text[WEFT_TERM_KINDS] = {"home", "lens", "line", "scale", "unevenness", "wobble"};
 

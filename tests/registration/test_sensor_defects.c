@@ -3,7 +3,7 @@
 #include "base/numeric/statistics.h"
 #include "btf/dataset/dataset.h"
 #include "capture/virtual/sensor.h"
-#include "registration/radiometry/sensor_faults.h"
+#include "registration/radiometry/sensor_defects.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/ground_truth.h"
@@ -142,10 +142,10 @@ static void what_is_told_of_the_sensor_is_so(void **state)
     virtual_session request = request_of("corrected");
     weft_virtual_settings *s = spoil(&request);
     weft_session session;
-    weft_sensor_faults faults;
+    weft_sensor_defects faults;
     weft_virtual_sensor sensor;
     assert_int_equal(weft_session_open("corrected", &session, NULL), WEFT_OK);
-    assert_int_equal(weft_sensor_faults_find(&session, &faults, NULL), WEFT_OK);
+    assert_int_equal(weft_sensor_defects_find(&session, &faults, NULL), WEFT_OK);
     assert_int_equal(weft_virtual_sensor_make(s, request.rig.seed, &sensor, NULL), WEFT_OK);
     int pixels = session.camera.width * session.camera.height, hot = 0, missed = 0;
     for (int i = 0; i < pixels; i++) {
@@ -166,7 +166,7 @@ static void what_is_told_of_the_sensor_is_so(void **state)
     assert_true(told->least > 0.58 && told->least < 0.7 && told->most > 1.08 && told->most < 1.12);
     assert_true(fabs(told->fall_off) < 0.01);
     weft_virtual_sensor_free(&sensor);
-    weft_sensor_faults_free(&faults);
+    weft_sensor_defects_free(&faults);
     weft_session_free(&session);
 }
 
@@ -175,13 +175,13 @@ static void flat_frames_that_tell_nothing_are_refused(void **state)
 {
     (void)state;
     weft_session session;
-    weft_sensor_faults faults;
+    weft_sensor_defects faults;
     weft_error error;
     assert_int_equal(weft_session_open("corrected", &session, NULL), WEFT_OK);
     session.black_level = (1 << session.bits) - 2;
-    assert_int_equal(weft_sensor_faults_find(&session, &faults, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_sensor_defects_find(&session, &faults, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "'corrected' are too dark"));
-    weft_sensor_faults_free(&faults);
+    weft_sensor_defects_free(&faults);
     weft_session_free(&session);
 }
 
@@ -189,22 +189,22 @@ static void a_frame_that_is_not_there_is_named(void **state)
 {
     (void)state;
     weft_session session;
-    weft_sensor_faults faults;
+    weft_sensor_defects faults;
     weft_error error;
     assert_int_equal(weft_session_open("corrected", &session, NULL), WEFT_OK);
     session.frame[3].taken = false;
-    assert_int_equal(weft_sensor_faults_find(&session, &faults, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_sensor_defects_find(&session, &faults, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "corrected/sensor/dark_brief_004.tif"));
-    weft_sensor_faults_free(&faults);
+    weft_sensor_defects_free(&faults);
     session.frame[3].taken = true;
     assert_int_equal(remove("corrected/sensor/flat_016.tif"), 0);
-    assert_int_equal(weft_sensor_faults_find(&session, &faults, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_sensor_defects_find(&session, &faults, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "corrected/sensor/flat_016.tif"));
-    weft_sensor_faults_free(&faults);
+    weft_sensor_defects_free(&faults);
     weft_session_free(&session);
 }
 
-int test_sensor_faults(void)
+int test_sensor_defects(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_of_the_sensor_take_its_faults_out),

@@ -1,4 +1,4 @@
-#include "cli/capture_words.h"
+#include "cli/capture_report.h"
 
 #include "base/text/json_text.h"
 #include "capture/planned_session.h"

@@ -1,4 +1,4 @@
-#include "capture/virtual/sensor_faults.h"
+#include "capture/virtual/sensor_defects.h"
 
 #include "capture/virtual/random.h"
 
@@ -51,8 +51,8 @@ static void lay_speck(const weft_virtual_settings *s, uint64_t seed, size_t spec
     }
 }
 
-weft_code weft_virtual_sensor_faults_make(const weft_virtual_settings *s, uint64_t seed,
-                                          weft_virtual_sensor_faults *faults, weft_error *error)
+weft_code weft_virtual_sensor_defects_make(const weft_virtual_settings *s, uint64_t seed,
+                                           weft_virtual_sensor_defects *faults, weft_error *error)
 {
     long count = (long)s->rig.width_px * (long)s->rig.height_px * 3;
     faults->response = malloc((size_t)count * sizeof(float));
@@ -71,10 +71,10 @@ weft_code weft_virtual_sensor_faults_make(const weft_virtual_settings *s, uint64
     return WEFT_OK;
 }
 
-void weft_virtual_sensor_faults_free(weft_virtual_sensor_faults *faults)
+void weft_virtual_sensor_defects_free(weft_virtual_sensor_defects *faults)
 {
     free(faults->response);
     free(faults->dark_electrons);
     free(faults->hot);
-    *faults = (weft_virtual_sensor_faults){0};
+    *faults = (weft_virtual_sensor_defects){0};
 }

@@ -1,4 +1,4 @@
-#include "capture/doubled.h"
+#include "capture/session_check.h"
 
 #include "base/atomic_file.h"
 
@@ -35,7 +35,7 @@ static int list_signatures(const weft_session *session, signature *list)
     return count;
 }
 
-/* Files that cannot be read are a fault of another kind. */
+/* Files that cannot be read are a problem of another kind. */
 static bool same_contents(const char *a, const char *b, size_t size)
 {
     char *first = NULL, *second = NULL;
@@ -49,7 +49,7 @@ static bool same_contents(const char *a, const char *b, size_t size)
 }
 
 static weft_code compare(const weft_session *session, const signature *first, const signature *second,
-                         weft_session_faults *faults, weft_error *error)
+                         weft_session_problems *problems, weft_error *error)
 {
     char path[PATH_MAX], before[PATH_MAX];
     weft_error what;
@@ -58,7 +58,7 @@ static weft_code compare(const weft_session *session, const signature *first, co
     if (!same_contents(before, path, first->bytes))
         return WEFT_OK;
     weft_error_set(&what, WEFT_BAD_INPUT, "'%s' has the bytes of shot %d, '%s'", path, first->shot, before);
-    return weft_session_faults_add(faults, WEFT_FAULT_DOUBLED, second->shot, what.message, error);
+    return weft_session_problems_add(problems, WEFT_PROBLEM_DUPLICATE, second->shot, what.message, error);
 }
 
 static bool alike(const signature *a, const signature *b)
@@ -66,7 +66,7 @@ static bool alike(const signature *a, const signature *b)
     return a->bytes == b->bytes && a->crc32 == b->crc32;
 }
 
-weft_code weft_find_doubled(const weft_session *session, weft_session_faults *faults, weft_error *error)
+weft_code weft_find_duplicates(const weft_session *session, weft_session_problems *problems, weft_error *error)
 {
     size_t bytes = (size_t)session->shot_count * sizeof(signature);
     signature *list = malloc(bytes);
@@ -76,7 +76,7 @@ weft_code weft_find_doubled(const weft_session *session, weft_session_faults *fa
     weft_code code = WEFT_OK;
     for (int i = 1; i < count && code == WEFT_OK; i++) {
         if (alike(&list[first], &list[i]))
-            code = compare(session, &list[first], &list[i], faults, error);
+            code = compare(session, &list[first], &list[i], problems, error);
         else
             first = i;
     }

@@ -83,7 +83,7 @@ static weft_code refuse(const char *path, const char *what, const char *argument
     return weft_fail(error, WEFT_BAD_INPUT, "'%s' is %s: %s belongs in its place", path, what, wanted);
 }
 
-weft_code weft_argument_belongs(const char *argument, const char *path, weft_error *error)
+weft_code weft_argument_check_type(const char *argument, const char *path, weft_error *error)
 {
     struct stat status;
     weft_file_kind kind;

@@ -1,4 +1,4 @@
-#include "capture/synthetic/mishap.h"
+#include "capture/synthetic/faults.h"
 
 const char *weft_synthetic_fault_name(weft_synthetic_fault fault)
 {

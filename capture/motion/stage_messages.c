@@ -1,4 +1,4 @@
-#include "capture/motion/stage_words.h"
+#include "capture/motion/stage_messages.h"
 
 double weft_stage_degrees(int32_t position)
 {

@@ -1,4 +1,4 @@
-#include "registration/radiometry/sensor_faults.h"
+#include "registration/radiometry/sensor_defects.h"
 
 #include "base/numeric/statistics.h"
 #include "base/picture/image.h"
@@ -87,7 +87,7 @@ static void separate(float *brief, float *lasting, double brief_s, double long_s
     }
 }
 
-static void mark_hot_channel(weft_sensor_faults *faults, size_t count, size_t channel, float *scratch)
+static void mark_hot_channel(weft_sensor_defects *faults, size_t count, size_t channel, float *scratch)
 {
     const double deviations = 8, normal = 1.4826, least_share = 0.001;
     double range = (1 << faults->bits) - 1 - faults->black_level;
@@ -101,7 +101,7 @@ static void mark_hot_channel(weft_sensor_faults *faults, size_t count, size_t ch
         faults->blind[i / 3] |= (double)faults->dark[i] > median + beyond;
 }
 
-static weft_code find_dark(const weft_session *session, float *scratch, weft_sensor_faults *faults, weft_error *error)
+static weft_code find_dark(const weft_session *session, float *scratch, weft_sensor_defects *faults, weft_error *error)
 {
     size_t count = value_count(session);
     double brief_s, long_s;
@@ -121,13 +121,13 @@ static weft_code find_dark(const weft_session *session, float *scratch, weft_sen
 
 /* ---- Under even light ---- */
 
-static double dark_value(const weft_sensor_faults *faults, size_t i, double exposure_s)
+static double dark_value(const weft_sensor_defects *faults, size_t i, double exposure_s)
 {
     return faults->offset ? (double)faults->offset[i] + (double)faults->dark[i] * exposure_s : faults->black_level;
 }
 
 /* What is left of the field without its dark value and the declared vignetting. */
-static void take_out_known(const weft_session *session, const weft_sensor_faults *faults, double exposure_s,
+static void take_out_known(const weft_session *session, const weft_sensor_defects *faults, double exposure_s,
                            float *flat)
 {
     const weft_camera *camera = &session->camera;
@@ -163,7 +163,7 @@ static weft_code check_field(const weft_session *session, const float *flat, siz
 }
 
 /* Makes a channel relative to its median, and marks what is dead. */
-static weft_code relate(float *flat, size_t count, size_t channel, float *scratch, weft_sensor_faults *faults,
+static weft_code relate(float *flat, size_t count, size_t channel, float *scratch, weft_sensor_defects *faults,
                         weft_error *error)
 {
     const float least = 0.5f, most = 4;
@@ -181,7 +181,7 @@ static weft_code relate(float *flat, size_t count, size_t channel, float *scratc
 }
 
 /* Means over the middle, a fifth of the picture wide, and over its outer tenth. */
-static double fall_off_of(const weft_session *session, const weft_sensor_faults *faults, const float *flat)
+static double fall_off_of(const weft_session *session, const weft_sensor_defects *faults, const float *flat)
 {
     int width = session->camera.width, height = session->camera.height;
     double sum[2] = {0, 0};
@@ -201,7 +201,7 @@ static double fall_off_of(const weft_session *session, const weft_sensor_faults 
 }
 
 /* Of the green of the pixels that see. */
-static void summarise(weft_sensor_faults *faults, const float *flat, size_t count, float *scratch)
+static void summarise(weft_sensor_defects *faults, const float *flat, size_t count, float *scratch)
 {
     size_t taken = 0;
     for (size_t i = 0; i < count / 3; i++) {
@@ -214,19 +214,19 @@ static void summarise(weft_sensor_faults *faults, const float *flat, size_t coun
 
 /* The response of nearly the least that sees: what is corrected by it keeps within full scale. The few that respond
  * less count as clipped there a little early; by the very least, one speck of dust would dim all photographs. */
-static float common_response(const weft_sensor_faults *faults)
+static float common_response(const weft_sensor_defects *faults)
 {
     return faults->summary.flat_frames > 0 ? (float)fmin(faults->summary.least, 1) : 1;
 }
 
-static void invert(const weft_sensor_faults *faults, float *flat, size_t count)
+static void invert(const weft_sensor_defects *faults, float *flat, size_t count)
 {
     float least = common_response(faults);
     for (size_t i = 0; i < count; i++)
         flat[i] = faults->blind[i / 3] ? 1 : least / flat[i];
 }
 
-static weft_code find_response(const weft_session *session, float *scratch, weft_sensor_faults *faults,
+static weft_code find_response(const weft_session *session, float *scratch, weft_sensor_defects *faults,
                                weft_error *error)
 {
     size_t count = value_count(session);
@@ -246,13 +246,13 @@ static weft_code find_response(const weft_session *session, float *scratch, weft
 
 /* ---- All ---- */
 
-static double scale_of(const weft_sensor_faults *faults)
+static double scale_of(const weft_sensor_defects *faults)
 {
     int full_scale = (1 << faults->bits) - 1, corrected = (1 << CORRECTED_BITS) - 2;
     return (double)(corrected - CORRECTED_BLACK) / (full_scale - faults->black_level);
 }
 
-static weft_code find_all(const weft_session *session, weft_sensor_faults *faults, weft_error *error)
+static weft_code find_all(const weft_session *session, weft_sensor_defects *faults, weft_error *error)
 {
     size_t count = value_count(session);
     faults->summary.dark_frames = session->dark_frames;
@@ -270,24 +270,24 @@ static weft_code find_all(const weft_session *session, weft_sensor_faults *fault
     return code;
 }
 
-weft_code weft_sensor_faults_find(const weft_session *session, weft_sensor_faults *faults, weft_error *error)
+weft_code weft_sensor_defects_find(const weft_session *session, weft_sensor_defects *faults, weft_error *error)
 {
-    *faults = (weft_sensor_faults){.seen = *session, .bits = session->bits, .black_level = session->black_level};
+    *faults = (weft_sensor_defects){.seen = *session, .bits = session->bits, .black_level = session->black_level};
     return weft_session_frame_count(session) > 0 ? find_all(session, faults, error) : WEFT_OK;
 }
 
-void weft_sensor_faults_free(weft_sensor_faults *faults)
+void weft_sensor_defects_free(weft_sensor_defects *faults)
 {
     free(faults->offset);
     free(faults->dark);
     free(faults->inverse);
     free(faults->blind);
-    *faults = (weft_sensor_faults){0};
+    *faults = (weft_sensor_defects){0};
 }
 
 /* ---- Taking them out ---- */
 
-static void correct(const weft_sensor_faults *faults, double exposure_s, size_t count, uint16_t *samples)
+static void correct(const weft_sensor_defects *faults, double exposure_s, size_t count, uint16_t *samples)
 {
     const double scale = scale_of(faults), highest = (1 << CORRECTED_BITS) - 2;
     int full_scale = (1 << faults->bits) - 1;
@@ -299,7 +299,7 @@ static void correct(const weft_sensor_faults *faults, double exposure_s, size_t 
     }
 }
 
-weft_code weft_sensor_read(const weft_sensor_faults *faults, const char *path, double exposure_s, uint16_t *samples,
+weft_code weft_sensor_read(const weft_sensor_defects *faults, const char *path, double exposure_s, uint16_t *samples,
                            weft_error *error)
 {
     const weft_camera *camera = &faults->seen.camera;
@@ -309,7 +309,7 @@ weft_code weft_sensor_read(const weft_sensor_faults *faults, const char *path, d
     return WEFT_OK;
 }
 
-void weft_sensor_blind(const weft_sensor_faults *faults, weft_sight *sight)
+void weft_sensor_blind(const weft_sensor_defects *faults, weft_sight *sight)
 {
     size_t pixels = (size_t)sight->camera.width * (size_t)sight->camera.height;
     for (size_t i = 0; faults->blind && i < pixels; i++) {

@@ -1,6 +1,6 @@
 /* What goes wrong with photographs of a hand. */
-#ifndef WEFT_CAPTURE_SYNTHETIC_MISHAP_H
-#define WEFT_CAPTURE_SYNTHETIC_MISHAP_H
+#ifndef WEFT_CAPTURE_SYNTHETIC_FAULTS_H
+#define WEFT_CAPTURE_SYNTHETIC_FAULTS_H
 
 #include "capture/synthetic/dice.h"
 #include "capture/synthetic/plan.h"

@@ -1,6 +1,6 @@
 /* What `weft capture` says of a rehearsal and of a check. */
-#ifndef WEFT_CLI_CAPTURE_WORDS_H
-#define WEFT_CLI_CAPTURE_WORDS_H
+#ifndef WEFT_CLI_CAPTURE_REPORT_H
+#define WEFT_CLI_CAPTURE_REPORT_H
 
 #include "capture/capture.h"
 #include "capture/preflight/preflight.h"

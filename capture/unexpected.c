@@ -1,4 +1,4 @@
-#include "capture/foreign.h"
+#include "capture/session_check.h"
 
 #include "base/atomic_file.h"
 #include "capture/photograph_writer.h"
@@ -80,7 +80,7 @@ static const char sensor_folder[] = "sensor";
 typedef struct search {
     const weft_session *session;
     expected_shots expected;
-    weft_session_faults *faults;
+    weft_session_problems *problems;
 } search;
 
 static weft_code add(const search *s, const char *folder, const char *file, const char *what, weft_error *error)
@@ -88,7 +88,7 @@ static weft_code add(const search *s, const char *folder, const char *file, cons
     weft_error found;
     weft_error_set(&found, WEFT_BAD_INPUT, "'%s/%s%s%s' %s", s->session->folder, folder, folder[0] ? "/" : "", file,
                    what);
-    return weft_session_faults_add(s->faults, WEFT_FAULT_FOREIGN, -1, found.message, error);
+    return weft_session_problems_add(s->problems, WEFT_PROBLEM_UNEXPECTED, -1, found.message, error);
 }
 
 static bool is_frame(const weft_session *session, const char *file)
@@ -143,9 +143,9 @@ static weft_code look(const search *s, weft_error *error)
     return code;
 }
 
-weft_code weft_find_foreign(const weft_session *session, weft_session_faults *faults, weft_error *error)
+weft_code weft_find_unexpected(const weft_session *session, weft_session_problems *problems, weft_error *error)
 {
-    search s = {.session = session, .faults = faults};
+    search s = {.session = session, .problems = problems};
     WEFT_TRY(list_expected(session, &s.expected, error));
     weft_code code = look(&s, error);
     free(s.expected.shot);
@@ -163,7 +163,7 @@ static bool is_of_cameras(const weft_camera_list *list, const char *name)
 }
 
 static weft_code look_beside(const char *folder, const char *name, const weft_camera_list *list,
-                             weft_session_faults *faults, weft_error *error)
+                             weft_session_problems *problems, weft_error *error)
 {
     bool left_over = weft_is_left_over(name, weft_camera_list_file);
     weft_error found;
@@ -171,16 +171,16 @@ static weft_code look_beside(const char *folder, const char *name, const weft_ca
         return WEFT_OK;
     weft_error_set(&found, WEFT_BAD_INPUT, "'%s/%s' %s", folder, name,
                    left_over ? "was left by a capture that was killed, or still runs" : "is no session of a camera");
-    return weft_session_faults_add(faults, WEFT_FAULT_FOREIGN, -1, found.message, error);
+    return weft_session_problems_add(problems, WEFT_PROBLEM_UNEXPECTED, -1, found.message, error);
 }
 
-weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_faults *faults,
+weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_problems *problems,
                                    weft_error *error)
 {
     DIR *listing = opendir(folder);
     weft_code code = listing ? WEFT_OK : weft_fail_errno(error, "list folder", folder);
     for (struct dirent *entry; code == WEFT_OK && (entry = readdir(listing));)
-        code = look_beside(folder, entry->d_name, list, faults, error);
+        code = look_beside(folder, entry->d_name, list, problems, error);
     if (listing)
         closedir(listing);
     return code;

@@ -1,6 +1,6 @@
 /* What a calibration of axes tells, in words. */
-#ifndef WEFT_REGISTRATION_AXES_WORDS_H
-#define WEFT_REGISTRATION_AXES_WORDS_H
+#ifndef WEFT_REGISTRATION_AXES_MESSAGES_H
+#define WEFT_REGISTRATION_AXES_MESSAGES_H
 
 #include "registration/axes/calibration.h"
 
