@@ -4,7 +4,7 @@
 set -eu
 
 packages="
-    build-essential cmake ninja-build pkg-config
+    build-essential ccache cmake ninja-build pkg-config
     libopencv-dev libopencv-contrib-dev libopenimageio-dev libexif-dev liblcms2-dev libpng-dev libhdf5-dev libzstd-dev zlib1g-dev libjansson-dev libcairo2-dev
     libceres-dev liblapacke-dev libembree-dev libglfw3-dev libx11-dev libimgui-dev libstb-dev fonts-roboto-unhinted libepoxy-dev libegl-dev libgl-dev libgles2 libgl1-mesa-dri
     libhidapi-dev libconfuse-dev libgphoto2-dev libcmocka-dev umockdev libumockdev-dev python3 python3-h5py python3-mpmath python3-numpy xvfb xauth xdotool imagemagick poppler-utils librsvg2-bin help2man
