@@ -6,8 +6,8 @@
  * at its end the quantile of the certificate and the one that was needed. */
 #include "base/half.h"
 #include "base/numeric/statistics.h"
+#include "compress/hold_out/certify.h"
 #include "compress/hold_out/hold_out.h"
-#include "compress/hold_out/residuals.h"
 #include "evaluate/error/coverage.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "compare/report/compare.h"
 
 #include "compare/pictures/frame_time.h"
-#include "compare/pictures/visible_error.h"
+#include "compare/pictures/scene_error.h"
 #include "player/gl/context.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "compare/tradeoff/expected_record.h"
 
 #include "base/integers.h"
-#include "compress/hold_out/registration_error.h"
+#include "compress/hold_out/certify.h"
 
 #include <math.h>
 

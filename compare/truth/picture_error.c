@@ -1,6 +1,6 @@
 #include "compare/truth/comparison.h"
 
-#include "compare/pictures/visible_error.h"
+#include "compare/pictures/scene_error.h"
 
 static bool block_is_lit(const weft_surface_sample *surface, int width, int left, int top)
 {

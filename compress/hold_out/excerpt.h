@@ -4,7 +4,17 @@
 
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
-#include "evaluate/error/window.h"
+#include "evaluate/error/predictor.h"
+
+/* ---- Scattered ---- */
+
+/* Places that lie evenly over a material without a period, so that no repeat of the cloth is hit again and again. */
+
+/* Number 1, 2 .. of an additive sequence that fills a square evenly: along `axis` 0 or 1, from 0 to below 1. Pure. */
+double weft_scattered_number(int axis, double number);
+
+/* The texel that stands for cell (i, j) of a grid of columns x rows over width x height texels. Pure. */
+void weft_scattered_texel(int columns, int rows, int width, int height, int i, int j, int *x, int *y);
 
 /* Which texels. */
 typedef enum weft_excerpt_kind {
@@ -70,5 +80,33 @@ weft_code weft_excerpt_write(const weft_excerpt *excerpt, const uint8_t *held_ou
 /* The same with the part of the surface that lies above these texels, unless it is too deep for them. */
 weft_code weft_excerpt_write_with_surface(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
                                           weft_dataset **result, weft_error *error);
+
+/* ---- Excerpt layout ---- */
+
+/* The layout of some texels of a dataset. */
+
+/* Of columns x rows texels that lie `stride` apart, as seen from `offset`, mm, from the centre of the source. The
+ * caller frees, also on failure. Errors: WEFT_SYSTEM. */
+weft_code weft_excerpt_make_layout(const weft_dataset_layout *source, int columns, int rows, int stride,
+                                   weft_vec3 offset, weft_dataset_layout *layout, weft_error *error);
+
+/* ---- Excerpt levels ---- */
+
+/* Texels of several mip levels as texels of one excerpt: the means of samples that a material's coarser levels are
+ * fitted to. */
+
+enum {
+    WEFT_EXCERPT_LAST_LEVEL = 3,  /* of 8 x 8 texels: more would be read than is fitted */
+    WEFT_EXCERPT_LEVEL_SIDE = 8,  /* along each side, so many texels of a coarser level at most */
+    WEFT_EXCERPT_NO_LEVEL = 0xff, /* of a texel that fills up the last row */
+};
+
+/* Reads single texels, at most side x side, and then as many as 8 x 8 of each of levels 1, 2 and 3, where there are
+ * four or more: each at another place of its cell of a grid over the whole. The first rows are the single texels; with
+ * `side` 0 there are none. level [height][width] receives the level of each texel. A texel of a coarser level has the
+ * means of those of the samples under it that are not masked. For far lights. The caller frees the excerpt and *level,
+ * also on failure. Errors: those of reading; WEFT_SYSTEM. */
+weft_code weft_excerpt_read_levels(weft_dataset *dataset, int side, weft_excerpt *excerpt, uint8_t **level,
+                                   weft_error *error);
 
 #endif

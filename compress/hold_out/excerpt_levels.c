@@ -1,8 +1,6 @@
-#include "compress/hold_out/excerpt_levels.h"
+#include "compress/hold_out/excerpt.h"
 
 #include "base/integers.h"
-#include "compress/hold_out/excerpt_layout.h"
-#include "compress/hold_out/scattered.h"
 
 #include <math.h>
 #include <stdlib.h>

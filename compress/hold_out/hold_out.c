@@ -2,10 +2,7 @@
 
 #include "base/integers.h"
 #include "compress/hold_out/certify.h"
-#include "compress/hold_out/mean_error.h"
 #include "compress/hold_out/measured_texels.h"
-#include "compress/hold_out/registration_error.h"
-#include "compress/hold_out/rounding.h"
 #include "compress/hold_out/trial.h"
 
 #include <malloc.h>

@@ -1,4 +1,4 @@
-#include "compress/hold_out/interpolation.h"
+#include "compress/hold_out/trial.h"
 
 #include "evaluate/raw_directions.h"
 #include "evaluate/texels_around.h"

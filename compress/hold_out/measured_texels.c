@@ -2,7 +2,7 @@
 
 #include "base/integers.h"
 #include "compress/compress.h"
-#include "compress/hold_out/excerpt_levels.h"
+#include "compress/hold_out/excerpt.h"
 #include "compress/run/memory.h"
 
 #include <math.h>

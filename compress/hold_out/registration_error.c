@@ -1,4 +1,4 @@
-#include "compress/hold_out/registration_error.h"
+#include "compress/hold_out/certify.h"
 
 #include "base/text/json_text.h"
 #include "compress/hold_out/excerpt.h"

@@ -1,4 +1,4 @@
-#include "compress/hold_out/residuals.h"
+#include "compress/hold_out/certify.h"
 
 #include "base/integers.h"
 #include "btf/direction/direction.h"

@@ -1,4 +1,4 @@
-#include "compress/hold_out/rounding.h"
+#include "compress/hold_out/certify.h"
 
 #include <stddef.h>
 

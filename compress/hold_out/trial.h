@@ -5,6 +5,7 @@
 
 #include "base/numeric/error_summary.h"
 #include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/split.h"
 #include "evaluate/error/predictor.h"
 
 /* Samples channel by channel beside what a model says of them; masked ones and those below the horizon are not among
@@ -44,5 +45,43 @@ weft_code weft_trial_ask(const weft_trial *trial, const weft_predictor *predicto
  * Errors: those of weft_interpolation_create. */
 weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft_asked_samples *held,
                                      weft_error *error);
+
+/* ---- Interpolation ---- */
+
+/* The photographs themselves as a model: interpolated between those that are not held out. */
+
+typedef struct weft_interpolation weft_interpolation;
+
+/* For the images image [count], which are held out with others, as held_out [image_count] says; `through`: seen through
+ * the surface of the excerpt, which has one. What is given must outlive the result, which the caller frees with
+ * weft_interpolation_free. Errors: WEFT_BAD_INPUT for views that cannot be triangulated, WEFT_SYSTEM for memory. */
+weft_code weft_interpolation_create(const weft_excerpt *excerpt, const uint8_t *held_out, const int *image, int count,
+                                    bool through, weft_interpolation **result, weft_error *error);
+void weft_interpolation_free(weft_interpolation *interpolation);
+
+/* What the photographs say of texel (x, y) in those images: prediction [count], in the quantity of the dataset,
+ * barycentric between views and, within each, between lights. Samples are divided by the cosine of their own light
+ * before. Masked ones take no part; NaN where none is left, and where one of the views saw the place beyond the
+ * excerpt. Thread-safe. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_interpolation_predict(const weft_interpolation *interpolation, int x, int y, weft_rgb *prediction,
+                                     weft_error *error);
+
+/* ---- Mean error ---- */
+
+/* Errors of what is held out, and their means over splits. */
+
+/* How many splits are in each mean. */
+typedef struct weft_means_taken {
+    int all, view, light, both;
+} weft_means_taken;
+
+/* The errors of one split. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_hold_out_summarise(const weft_asked_samples *compared, weft_hold_out_error *result, weft_error *error);
+
+/* Takes one more summary into a mean over `*taken` of them; one without values does not count. */
+void weft_summary_take(const weft_error_summary *one, int *taken, weft_error_summary *mean);
+
+/* The same of all summaries. */
+void weft_hold_out_take(const weft_hold_out_error *one, weft_means_taken *taken, weft_hold_out_error *mean);
 
 #endif

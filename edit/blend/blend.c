@@ -2,9 +2,7 @@
 
 #include "btf/material/gather.h"
 #include "btf/material/metadata.h"
-#include "edit/blend/cut.h"
-#include "edit/blend/seam.h"
-#include "edit/blend/spread.h"
+#include "edit/blend/steps.h"
 
 #include <jansson.h>
 #include <stdlib.h>

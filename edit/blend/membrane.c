@@ -1,4 +1,4 @@
-#include "edit/blend/membrane.h"
+#include "edit/blend/steps.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "edit/blend/seam.h"
+#include "edit/blend/steps.h"
 
 #include "base/numeric/statistics.h"
 

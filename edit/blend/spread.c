@@ -1,6 +1,5 @@
-#include "edit/blend/spread.h"
+#include "edit/blend/steps.h"
 
-#include "edit/blend/membrane.h"
 #include "edit/blend/pictures.h"
 
 #include <float.h>

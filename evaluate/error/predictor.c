@@ -4,6 +4,8 @@
 #include "reflectance/lafortune/lafortune.h"
 #include "reflectance/weave/batch.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 typedef void predict_function(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
@@ -392,4 +394,27 @@ weft_code weft_predictor_prepare_rows(weft_predictor *predictor, int y, int rows
     predictor->first_row = y;
     return weft_dataset_read_block(predictor->other, 0, y, layout->width, rows, predictor->samples, predictor->mask,
                                    error);
+}
+
+/* ---- Window ---- */
+
+static weft_real coordinate_in_window(weft_real whole, int first, int count, int texels)
+{
+    if (count == texels)
+        return whole;
+    weft_real place = (whole - floor(whole)) * texels - first;
+    bool inside = place >= (weft_real)0.5 && place <= count - (weft_real)0.5;
+    return inside ? place / count : (weft_real)NAN;
+}
+
+void weft_window_taps(const weft_relief *relief, const weft_predicted_window *window, int width, int height, int x,
+                      int y, weft_vec3 view, const int index[3], const weft_real weight[3], weft_relief_tap tap[3])
+{
+    weft_real u = (window->x + x + (weft_real)0.5) / window->whole_width;
+    weft_real v = 1 - (window->y + y + (weft_real)0.5) / window->whole_height;
+    weft_relief_taps(relief, 1, u, v, view, index, weight, tap);
+    for (int i = 0; i < 3; i++) {
+        tap[i].u = coordinate_in_window(tap[i].u, window->x, width, window->whole_width);
+        tap[i].v = 1 - coordinate_in_window(1 - tap[i].v, window->y, height, window->whole_height);
+    }
 }

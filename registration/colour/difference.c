@@ -1,6 +1,6 @@
 #include "registration/colour/difference.h"
 
-#include "base/picture/cie.h"
+#include "base/picture/colour_space.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* weft tile --blend: the cut is the cheapest there is, and what is made tiles. */
 #include "edit/blend/blend.h"
-#include "edit/blend/cut.h"
+#include "edit/blend/steps.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
 

@@ -1,6 +1,6 @@
 /* weft tile --blend: what the ends differ by is spread over the tile, in components and in lobes. */
 #include "edit/blend/blend.h"
-#include "edit/blend/membrane.h"
+#include "edit/blend/steps.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
 

@@ -1,5 +1,5 @@
 /* A block of a material is seen through the heights of all of it. */
-#include "evaluate/error/window.h"
+#include "evaluate/error/predictor.h"
 #include "tests/support/expect_ok.h"
 
 #include <math.h>

@@ -1,8 +1,10 @@
+#include "base/picture/colour.h"
+#include "btf/direction/direction.h"
+#include "compare/pictures/sample_picture.h"
 #include "compare/report/page/sections.h"
 
-#include "base/picture/colour.h"
-#include "compare/pictures/sample_picture.h"
-
+#include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 /* Small textures are shown large enough to see their texels. */
@@ -106,6 +108,90 @@ weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, co
         fprintf(page->html, "<h3>Image %d: view %.0f\u00b0 (azimuth %.0f\u00b0), light %.0f\u00b0 (azimuth %.0f\u00b0)",
                 material->pair[i].image, at.theta_view_deg, at.phi_view_deg, at.theta_light_deg, at.phi_light_deg);
         WEFT_TRY(put_models(page, i, comparison, error));
+    }
+    return WEFT_OK;
+}
+
+/* ---- Representative ---- */
+
+static const double shown_theta_view_deg[WEFT_REPRESENTATIVE_COUNT] = {0, 30, 60, 75};
+static const double shown_theta_light_deg = 30;
+
+weft_image_angles weft_image_angles_of(const weft_dataset_layout *layout, int image)
+{
+    int x = layout->width / 2, y = layout->height / 2;
+    weft_angles light = weft_angles_of_direction(weft_dataset_light_direction(layout, image, x, y));
+    weft_angles view =
+        weft_angles_of_direction(weft_dataset_view_direction(layout, layout->view_of_image[image], x, y));
+    return (weft_image_angles){weft_deg_of_rad(light.theta_rad), weft_deg_of_rad(light.phi_rad),
+                               weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad)};
+}
+
+/* How far an image is from the wanted one; the azimuth matters little, and not at all where one of the two is at the
+ * zenith. */
+static double distance(const weft_image_angles *at, double theta_view_deg)
+{
+    double aside = fabs(remainder(at->phi_light_deg - at->phi_view_deg, 360)) - 90;
+    if (at->theta_view_deg < 1 || at->theta_light_deg < 1)
+        aside = 0;
+    double view = at->theta_view_deg - theta_view_deg, light = at->theta_light_deg - shown_theta_light_deg;
+    return view * view + 0.25 * light * light + 0.01 * aside * aside;
+}
+
+int weft_representative_images(const weft_dataset_layout *layout, int image[WEFT_REPRESENTATIVE_COUNT])
+{
+    int count = 0;
+    for (int i = 0; i < WEFT_REPRESENTATIVE_COUNT; i++) {
+        double nearest = INFINITY;
+        for (int candidate = 0; candidate < layout->image_count; candidate++) {
+            weft_image_angles at = weft_image_angles_of(layout, candidate);
+            bool shown = false;
+            for (int k = 0; k < count; k++)
+                shown = shown || image[k] == candidate;
+            double d = distance(&at, shown_theta_view_deg[i]);
+            if (!shown && d < nearest) {
+                nearest = d;
+                image[count] = candidate;
+            }
+        }
+        count += nearest < INFINITY;
+    }
+    return count;
+}
+
+/* ---- Left out ---- */
+
+static void print_table(weft_page *page, const weft_leave_one_out *left_out)
+{
+    fputs("<table>", page->html);
+    weft_page_columns(page, "photograph left out|values|relative RMSE|median relative");
+    for (int i = 0; i < left_out->count; i++) {
+        const weft_left_out *photograph = &left_out->photograph[i];
+        fputs("<tr><td>", page->html);
+        weft_page_text(page, photograph->name);
+        fprintf(page->html, "</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", photograph->error.count,
+                100 * photograph->error.relative_rmse, 100 * photograph->error.median_relative);
+    }
+    fprintf(page->html, "<tr><th scope=\"row\">mean</th><td></td><td>%.2f %%</td><td>%.2f %%</td></tr></table>\n",
+            100 * left_out->mean_relative_rmse, 100 * left_out->mean_median_relative);
+}
+
+weft_code weft_page_left_out(weft_page *page, const weft_leave_one_out *left_out, weft_error *error)
+{
+    if (left_out->count == 0)
+        return WEFT_OK;
+    fprintf(page->html,
+            "<h2>Leave one out</h2>\n<p class=\"note\">Each photograph predicted by a fit to the %d others, over its "
+            "valid samples and all channels. All fits together took %.1f s.</p>\n",
+            left_out->count - 1, left_out->seconds);
+    print_table(page, left_out);
+    for (int i = 0; i < left_out->count; i++) {
+        const weft_left_out *photograph = &left_out->photograph[i];
+        char name[32], caption[160];
+        snprintf(name, sizeof name, "left-out-%d", i);
+        snprintf(caption, sizeof caption, "%s left out: relative RMSE %.2f %%, median relative %.2f %%",
+                 photograph->name, 100 * photograph->error.relative_rmse, 100 * photograph->error.median_relative);
+        WEFT_TRY(weft_page_pair(page, name, &photograph->pair, caption, error));
     }
     return WEFT_OK;
 }

@@ -5,8 +5,6 @@
 #include "btf/dataset/write_blocks.h"
 #include "compress/hold_out/certify.h"
 #include "compress/hold_out/hold_out.h"
-#include "compress/hold_out/registration_error.h"
-#include "compress/hold_out/rounding.h"
 #include "evaluate/error/coverage.h"
 #include "import/import.h"
 #include "tests/support/scratch_folder.h"

@@ -2,7 +2,7 @@
 #include "tests/compare/fixture.h"
 
 #include "btf/direction/direction.h"
-#include "compress/hold_out/excerpt_levels.h"
+#include "compress/hold_out/excerpt.h"
 #include "compress/hold_out/hold_out.h"
 
 #include <math.h>
