@@ -1,6 +1,5 @@
 #include "capture/capture.h"
 
-#include "capture/night.h"
 #include "capture/planned_session.h"
 #include "capture/sensor_frames.h"
 
@@ -11,17 +10,9 @@
 
 /* ---- Before the first photograph ---- */
 
-static int count_missing(const weft_session *session)
-{
-    int missing = 0;
-    for (int i = 0; i < session->shot_count; i++)
-        missing += !session->record[i].taken;
-    return missing;
-}
-
 static double bytes_missing(const weft_session *session, int brackets)
 {
-    double photographs = (double)count_missing(session) * (1 + brackets) + weft_sensor_frames_missing(session);
+    double photographs = (double)weft_session_missing(session) * (1 + brackets) + weft_sensor_frames_missing(session);
     return photographs * (double)weft_photograph_bytes(session);
 }
 
@@ -34,7 +25,7 @@ static weft_code check_space(const weft_capture *capture, const char *folder, we
     int missing = 0;
     for (int i = 0; i < capture->camera_count; i++) {
         needed += bytes_missing(&capture->held[i].session, capture->brackets);
-        missing += count_missing(&capture->held[i].session);
+        missing += weft_session_missing(&capture->held[i].session);
     }
     if (needed > available)
         return weft_fail(error, WEFT_SYSTEM, "session '%s' needs %.2f GB for %d photographs, the disk has %.2f GB",
@@ -75,7 +66,7 @@ static weft_code hold_all(const weft_capture_request *request, const weft_progre
         WEFT_TRY(hold(request, rig, progress, held, error));
         capture->camera_count++;
         capture->summary.damaged += held->damaged;
-        capture->summary.found += held->session.shot_count - count_missing(&held->session);
+        capture->summary.found += held->session.shot_count - weft_session_missing(&held->session);
     }
     if (capture->rig->first)
         weft_camera_folder_sweep(request->folder);
@@ -98,66 +89,4 @@ void weft_capture_end(weft_capture *capture)
     for (int i = 0; i < capture->camera_count; i++)
         weft_held_session_release(&capture->held[i]);
     capture->camera_count = 0;
-}
-
-/* ---- Photographs ---- */
-
-static int count_all_missing(const weft_capture *capture)
-{
-    int missing = 0;
-    for (int i = 0; i < capture->camera_count; i++)
-        missing += count_missing(&capture->held[i].session);
-    return missing;
-}
-
-static int count_all_shots(const weft_capture *capture)
-{
-    int shots = 0;
-    for (int i = 0; i < capture->camera_count; i++)
-        shots += capture->held[i].session.shot_count;
-    return shots;
-}
-
-static bool is_complete(const weft_capture *capture)
-{
-    bool complete = count_all_missing(capture) == 0;
-    for (int i = 0; i < capture->camera_count; i++)
-        complete = complete && weft_sensor_frames_missing(&capture->held[i].session) == 0;
-    return complete;
-}
-
-static weft_code take_missing(weft_capture *capture, const volatile sig_atomic_t *stop, const weft_progress *progress,
-                              weft_error *error)
-{
-    const weft_session *sessions[WEFT_CAMERAS_MAX];
-    weft_volley_order order;
-    for (int i = 0; i < capture->camera_count; i++)
-        sessions[i] = &capture->held[i].session;
-    WEFT_TRY(weft_volley_order_make(capture->rig, sessions, capture->camera_count, &order, error));
-    const weft_night night = {
-        .rig = capture->rig,
-        .camera_count = capture->camera_count,
-        .held = capture->held,
-        .brackets = capture->brackets,
-        .status = capture->status,
-        .order = &order,
-        .summary = &capture->summary,
-        .stop = stop,
-        .progress = progress,
-    };
-    weft_code code = weft_night_take(&night, error);
-    weft_volley_order_free(&order);
-    return code;
-}
-
-weft_code weft_capture_take(weft_capture *capture, const volatile sig_atomic_t *stop, const weft_progress *progress,
-                            weft_error *error)
-{
-    if (!is_complete(capture))
-        WEFT_TRY(take_missing(capture, stop, progress, error));
-    if (is_complete(capture))
-        return WEFT_OK;
-    int shots = count_all_shots(capture);
-    return weft_fail(error, WEFT_SYSTEM, "stopped, %d of %d photographs; run again to go on",
-                     shots - count_all_missing(capture), shots);
 }

@@ -110,7 +110,7 @@ static weft_code avoid_cameras(const weft_rig *taker, weft_shot *shot, weft_erro
     return WEFT_OK;
 }
 
-/* Keeps the shots that are for this camera. Poses that no camera can take up are told before the night, not in it. */
+/* Keeps the shots that are for this camera. Poses that no camera can take up are reported before the run, not in it. */
 static weft_code choose_shots(weft_plan *plan, const weft_rig *rig, weft_error *error)
 {
     int kept = 0;
@@ -193,4 +193,12 @@ uint64_t weft_photograph_bytes(const weft_session *session)
     const uint64_t header = 2048;
     uint64_t bits = (uint64_t)session->camera.width * (uint64_t)session->camera.height * 3 * (uint64_t)session->bits;
     return bits / 8 + header;
+}
+
+int weft_session_missing(const weft_session *session)
+{
+    int missing = 0;
+    for (int i = 0; i < session->shot_count; i++)
+        missing += !session->record[i].taken;
+    return missing;
 }

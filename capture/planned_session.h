@@ -14,4 +14,7 @@ weft_code weft_session_of_plan(const char *folder, const char *plan, const weft_
 /* Bytes that a photograph of the session takes on disk, rounded up. Pure. */
 uint64_t weft_photograph_bytes(const weft_session *session);
 
+/* Shots of the session that are not taken. Pure. */
+int weft_session_missing(const weft_session *session);
+
 #endif

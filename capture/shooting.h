@@ -34,20 +34,34 @@ void weft_shooting_end(weft_shooting *shooting);
 weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
                              weft_error *error);
 
-/* ---- What a volley is made of (capture/volley.h) ---- */
+/* ---- Synchronised shots: all cameras that see one light in one pose of the stage, exposed together ---- */
 
-/* Takes up the pose of a shot; the meter is that of its view. Errors: those of the stage; WEFT_BAD_INPUT as above. */
-weft_code weft_shooting_drive(weft_shooting *shooting, int shot, weft_error *error);
+/* One camera of a synchronised shot. `samples` holds all photographs of the shot, one after the other. */
+typedef struct weft_exposing {
+    weft_shooting *shooting;
+    int shot;
+    uint16_t *samples;
+    weft_shot_record record; /* viewpoint, exposure, brackets */
+    weft_code code;          /* of this camera alone; what follows is for synchronised shots */
+    weft_error error;        /* why */
+    double exposure_s, read_back_s;
+    bool wanted; /* whether it exposes now */
+} weft_exposing;
 
-/* Exposes under the light that burns, until the exposure is right. Errors: those of the camera. */
-weft_code weft_shooting_meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
-                                         weft_error *error);
+/* Takes the first photograph of each: drives the stage, switches the lamp on once, and lets each camera meter and
+ * expose, each in a thread of its own where there are several. A shot during which the stage did not keep its pose is
+ * taken again. A camera that fails has its own `code`, and the others have their photographs. Errors: those of stage
+ * and light. Then, and where all cameras fail, axes stand still and the light is off. */
+weft_code weft_shot_take(weft_exposing *exposing, int count, weft_error *error);
 
-/* One exposure, repeated where the camera does not deliver it. Errors: those of the camera. */
-weft_code weft_shooting_expose(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples,
-                               double *read_back_s, weft_error *error);
+/* Fails: the stage moved during a photograph, `times` times. Its axes stand still then. */
+weft_code weft_shot_fail_disturbed(const weft_exposing *exposing, int times, weft_error *error);
 
-/* Returns `code`. Whatever has failed, nothing moves on and nothing burns on. */
-weft_code weft_shooting_halt(weft_shooting *shooting, weft_code code);
+/* Takes the next photograph of the bracket of each that needs one and did not fail: shorter where the sensor clipped in
+ * the opening, else longer, up to 16 times, until the darkest of the opening reaches a thirty-second of full scale. It
+ * goes behind the last one in `samples`; record gets its exposure. *taken says how many there were, and `wanted` whose.
+ * *held says whether the stage kept its pose: where it did not, the shot is to be taken again from its beginning, for
+ * its photographs share one pose. Errors: as above. */
+weft_code weft_shot_bracket(weft_exposing *exposing, int count, int most, int *taken, bool *held, weft_error *error);
 
 #endif

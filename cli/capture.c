@@ -109,7 +109,7 @@ static weft_code rehearse(const capture_command *command, weft_rig *rig, const c
     return WEFT_OK;
 }
 
-/* ---- Before the night ---- */
+/* ---- Checks before a run ---- */
 
 static weft_code judge(const capture_command *command, const char *camera, const weft_preflight *result,
                        weft_error *error)
@@ -160,7 +160,7 @@ static weft_code check_all(const capture_command *command, weft_rig *rig, weft_l
     return result;
 }
 
-/* ---- The night ---- */
+/* ---- The run ---- */
 
 static void say_summary(const capture_command *command, const weft_capture_summary *summary)
 {
@@ -253,7 +253,7 @@ static weft_code rehearse_all(const capture_command *command, weft_rig *rig, con
         say_camera(command, one);
         WEFT_TRY(rehearse(command, one, warning, error));
     }
-    return rig->next ? weft_say_volleys(&command->common, &command->request, rig, error) : WEFT_OK;
+    return rig->next ? weft_say_synchronised_shots(&command->common, &command->request, rig, error) : WEFT_OK;
 }
 
 /* Of one camera a file, of several a folder. */

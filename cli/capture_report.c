@@ -2,7 +2,7 @@
 
 #include "base/text/json_text.h"
 #include "capture/planned_session.h"
-#include "capture/volley_order.h"
+#include "capture/shot_order.h"
 #include "cli/command/describe.h"
 
 #include <stdio.h>
@@ -114,8 +114,8 @@ weft_code weft_say_checks(const weft_common_options *common, const weft_prefligh
 
 /* ---- Several cameras ---- */
 
-static weft_code order_volleys(const weft_capture_request *request, const weft_rig *rig, weft_session *sessions,
-                               weft_volley_order *order, weft_error *error)
+static weft_code order_shots(const weft_capture_request *request, const weft_rig *rig, weft_session *sessions,
+                             weft_shot_order *order, weft_error *error)
 {
     const weft_session *all[WEFT_CAMERAS_MAX];
     int count = 0;
@@ -123,23 +123,23 @@ static weft_code order_volleys(const weft_capture_request *request, const weft_r
         WEFT_TRY(weft_session_of_plan(request->folder, request->plan, one, &sessions[count], error));
         all[count] = &sessions[count];
     }
-    return weft_volley_order_make(rig, all, count, order, error);
+    return weft_shot_order_make(rig, all, count, order, error);
 }
 
-weft_code weft_say_volleys(const weft_common_options *common, const weft_capture_request *request, const weft_rig *rig,
-                           weft_error *error)
+weft_code weft_say_synchronised_shots(const weft_common_options *common, const weft_capture_request *request,
+                                      const weft_rig *rig, weft_error *error)
 {
     weft_session sessions[WEFT_CAMERAS_MAX] = {0};
-    weft_volley_order order = {0};
+    weft_shot_order order = {0};
     int shots = 0;
-    weft_code code = order_volleys(request, rig, sessions, &order, error);
+    weft_code code = order_shots(request, rig, sessions, &order, error);
     for (int i = 0; i < WEFT_CAMERAS_MAX; i++) {
         shots += sessions[i].shot_count;
         weft_session_free(&sessions[i]);
     }
     if (code == WEFT_OK)
-        weft_command_say(common, "together: %d photographs in %d volleys, %.2f h of moves", shots, order.count,
-                         order.stage.seconds / 3600);
-    weft_volley_order_free(&order);
+        weft_command_say(common, "together: %d photographs in %d synchronised shots, %.2f h of moves", shots,
+                         order.count, order.stage.seconds / 3600);
+    weft_shot_order_free(&order);
     return code;
 }

@@ -1,4 +1,4 @@
-#include "btf/session/journal.h"
+#include "btf/session/session.h"
 
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"

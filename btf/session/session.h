@@ -100,6 +100,10 @@ weft_code weft_session_create(const weft_session *session, weft_error *error);
 weft_code weft_session_open(const char *folder, weft_session *session, weft_error *error);
 void weft_session_free(weft_session *session);
 
+/* Fills session->record from the journal in session->folder; no journal means no photographs. A shot named twice keeps
+ * its last line. A last line without its newline is ignored. Errors: WEFT_BAD_INPUT naming file and line. */
+weft_code weft_journal_read(weft_session *session, weft_error *error);
+
 /* Path of the photograph of a shot inside the folder; `path` holds at least `size` bytes. Pure. */
 void weft_session_photograph_path(const weft_session *session, int shot, char *path, int size);
 

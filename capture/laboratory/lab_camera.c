@@ -40,7 +40,7 @@ static weft_code read_poses(weft_lab_camera *c, weft_error *error)
     return WEFT_OK;
 }
 
-/* Speeds, limits and retries may change in the night; where things stand and what takes the photographs may not. */
+/* Speeds, limits and retries may change between runs; where things stand and what takes the photographs may not. */
 static weft_code identify(weft_lab_camera *c, weft_error *error)
 {
     const weft_rig_file *file = c->file;

@@ -1,4 +1,4 @@
-/* What would go wrong in the night, found before it: a few photographs at the poses where it goes wrong first. */
+/* What would go wrong in a capture run, found before it: a few photographs at the poses where it goes wrong first. */
 #ifndef WEFT_CAPTURE_PREFLIGHT_PREFLIGHT_H
 #define WEFT_CAPTURE_PREFLIGHT_PREFLIGHT_H
 

@@ -9,7 +9,7 @@ typedef struct weft_status_share {
     const char *camera;
     weft_status_counts counts;
     const char *failure; /* its last one; NULL: none */
-    bool left_out;       /* for the rest of the night */
+    bool left_out;       /* for the rest of the run */
 } weft_status_share;
 
 /* Writes `folder`/index.html, anew. `why` tells why the run ended; NULL: it goes on, or took all. Not thread-safe.

@@ -1,6 +1,6 @@
 #include "registration/photographs/corners.h"
 
-#include "registration/photographs/photographs_bridge.h"
+#include "registration/photographs/corner_fit_bridge.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #define WEFT_REGISTRATION_PHOTOGRAPHS_LENS_H
 
 #include "registration/lamp/photograph.h"
-#include "registration/photographs/photographs_bridge.h"
+#include "registration/photographs/corner_fit_bridge.h"
 
 /* How a lens became known. */
 typedef struct weft_lens_estimate {

@@ -1,4 +1,4 @@
-#include "registration/photographs/photographs_bridge.h"
+#include "registration/photographs/corner_fit_bridge.h"
 
 #include "registration/pose/marker_edges.h"
 #include "registration/pose/opencv_guard.h"

@@ -157,27 +157,27 @@ static int taken_by(const char *folder)
     return taken;
 }
 
-static int faults_of(const char *folder)
+static int problems_of(const char *folder)
 {
-    weft_session_problems faults;
+    weft_session_problems problems;
     weft_session session;
     assert_int_equal(weft_session_open(folder, &session, NULL), WEFT_OK);
-    assert_int_equal(weft_session_check(&session, NULL, &faults, NULL), WEFT_OK);
-    int count = faults.count;
-    weft_session_problems_free(&faults);
+    assert_int_equal(weft_session_check(&session, NULL, &problems, NULL), WEFT_OK);
+    int count = problems.count;
+    weft_session_problems_free(&problems);
     weft_session_free(&session);
     return count;
 }
 
-static int faults_beside(const char *folder)
+static int problems_beside(const char *folder)
 {
     weft_camera_list list;
-    weft_session_problems faults = {0};
+    weft_session_problems problems = {0};
     assert_int_equal(weft_camera_list_read(folder, &list, NULL), WEFT_OK);
     assert_int_equal(list.count, CAMERAS);
-    assert_int_equal(weft_camera_folder_check(folder, &list, &faults, NULL), WEFT_OK);
-    int count = faults.count;
-    weft_session_problems_free(&faults);
+    assert_int_equal(weft_camera_folder_check(folder, &list, &problems, NULL), WEFT_OK);
+    int count = problems.count;
+    weft_session_problems_free(&problems);
     return count;
 }
 
@@ -185,10 +185,10 @@ static void assert_whole(const char *first, const char *second)
 {
     assert_int_equal(taken_by(first), SHOTS_OF_FIRST);
     assert_int_equal(taken_by(second), SHOTS_OF_SECOND);
-    assert_int_equal(faults_of(first) + faults_of(second), 0);
+    assert_int_equal(problems_of(first) + problems_of(second), 0);
 }
 
-/* ---- Whole nights ---- */
+/* ---- Whole runs ---- */
 
 /* First: a process that has used OpenMP cannot fork and use it again. */
 static void a_killed_capture_goes_on(void **state)
@@ -214,11 +214,11 @@ static void a_killed_capture_goes_on(void **state)
     assert_int_equal(summary.found, before);
     assert_int_equal(summary.taken, SHOTS_OF_FIRST + SHOTS_OF_SECOND - before);
     assert_whole("killed/camera1", "killed/camera2");
-    assert_int_equal(faults_beside("killed"), 0);
+    assert_int_equal(problems_beside("killed"), 0);
     close_bench(CAMERAS);
 }
 
-static void a_volley_is_lit_once_for_all_cameras(void **state)
+static void a_synchronised_shot_is_lit_once_for_all_cameras(void **state)
 {
     (void)state;
     weft_capture_summary summary = {0};
@@ -273,7 +273,7 @@ static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
     assert_non_null(strstr(error.message, "camera 'camera2': its cable is out"));
     assert_int_equal(taken_by("failing/camera1"), SHOTS_OF_FIRST);
     assert_int_equal(taken_by("failing/camera2"), 0);
-    assert_int_equal(faults_of("failing/camera1") + faults_of("failing/camera2"), 0);
+    assert_int_equal(problems_of("failing/camera1") + problems_of("failing/camera2"), 0);
     /* Three failures in a row, and it is not waited for any more. */
     assert_int_equal(b.exposures[1], 3);
     uint32_t crc = small_session_crc("failing/camera1");
@@ -323,8 +323,8 @@ static void pages_tell_the_share_of_each_camera(void **state)
     close_bench(CAMERAS);
 }
 
-/* In the midst of a volley: it is completed, and nothing after it is begun. */
-static void a_night_that_is_stopped_completes_its_volley_and_says_so(void **state)
+/* In the midst of a synchronised shot: it is completed, and nothing after it is begun. */
+static void a_run_that_is_stopped_completes_its_shot_and_says_so(void **state)
 {
     (void)state;
     weft_capture_summary summary = {0};
@@ -345,7 +345,7 @@ static void a_night_that_is_stopped_completes_its_volley_and_says_so(void **stat
     close_bench(CAMERAS);
 }
 
-/* The sensor of the second camera is not seen; the first has its night. */
+/* The sensor of the second camera is not seen; the first takes all. */
 static void a_camera_whose_sensor_is_not_seen_is_left_out_alone(void **state)
 {
     (void)state;
@@ -418,13 +418,13 @@ static void a_bracket_that_the_stage_disturbed_is_taken_again(void **state)
 
 /* ---- The folder ---- */
 
-static void what_is_no_session_of_a_camera_is_foreign(void **state)
+static void what_is_no_session_of_a_camera_is_unexpected(void **state)
 {
     (void)state;
-    assert_int_equal(faults_beside("session"), 0);
+    assert_int_equal(problems_beside("session"), 0);
     scratch_store("session/notes.txt", "x", 1);
     scratch_store("session/.cameras.99.json", "x", 1);
-    assert_int_equal(faults_beside("session"), 2);
+    assert_int_equal(problems_beside("session"), 2);
     unlink("session/notes.txt");
     unlink("session/.cameras.99.json");
 }
@@ -519,17 +519,17 @@ static void cameras_share_the_pose_of_a_turntable(void **state)
     weft_stage_free(stage);
 }
 
-int test_volleys(void)
+int test_synchronised_shots(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_killed_capture_goes_on),
-        cmocka_unit_test(a_volley_is_lit_once_for_all_cameras),
-        cmocka_unit_test(what_is_no_session_of_a_camera_is_foreign),
+        cmocka_unit_test(a_synchronised_shot_is_lit_once_for_all_cameras),
+        cmocka_unit_test(what_is_no_session_of_a_camera_is_unexpected),
         cmocka_unit_test(other_cameras_do_not_go_on),
         cmocka_unit_test(cameras_expose_at_the_same_time),
         cmocka_unit_test(a_camera_that_fails_loses_nothing_of_the_other),
         cmocka_unit_test(pages_tell_the_share_of_each_camera),
-        cmocka_unit_test(a_night_that_is_stopped_completes_its_volley_and_says_so),
+        cmocka_unit_test(a_run_that_is_stopped_completes_its_shot_and_says_so),
         cmocka_unit_test(a_camera_whose_sensor_is_not_seen_is_left_out_alone),
         cmocka_unit_test(a_camera_that_failed_once_goes_on),
         cmocka_unit_test(a_bracket_that_the_stage_disturbed_is_taken_again),

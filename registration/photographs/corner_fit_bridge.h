@@ -1,4 +1,4 @@
-/* The door of this room to OpenCV: markers in large photographs, and one lens for many of them. */
+/* OpenCV behind a C header: markers in large photographs, and one lens for many of them. */
 #ifndef WEFT_REGISTRATION_PHOTOGRAPHS_PHOTOGRAPHS_BRIDGE_H
 #define WEFT_REGISTRATION_PHOTOGRAPHS_PHOTOGRAPHS_BRIDGE_H
 
