@@ -13,10 +13,9 @@
 enum { SMALLEST_BUDGET = 4500, BUDGET_STEP = 1000, BUDGETS = 8 };
 
 /* Columns of the table: the largest value of each is printed. */
-typedef enum kind { PLAIN, TABLE, LIGHT_TABLE, COMPONENTS, TARGET, BUDGET, BUDGET_LIGHT, KINDS } kind;
+typedef enum kind { PLAIN, TABLE, LIGHT_TABLE, TARGET, BUDGET, BUDGET_LIGHT, KINDS } kind;
 
-static const char *const name_of_kind[KINDS] = {"no T",  "T",      "T and S",      "components",
-                                                "error", "budget", "budget with S"};
+static const char *const name_of_kind[KINDS] = {"no T", "T", "T and S", "error", "budget", "budget with S"};
 
 /* Fits, and takes the largest value over the brightest sample into `most`. A budget that is too small counts as none.
  */
@@ -45,7 +44,6 @@ static weft_compress_options options_of(kind own, int lobes, int budget)
     options.lobe_count = lobes;
     options.table = own != PLAIN;
     options.light_table = own == LIGHT_TABLE || own == TARGET || own == BUDGET_LIGHT;
-    options.table_components = own == COMPONENTS ? 2 : 0;
     options.target_error = own == TARGET ? 0.05 : 0;
     options.budget_bytes =
         (uint64_t)(own == BUDGET || own == BUDGET_LIGHT ? SMALLEST_BUDGET + budget * BUDGET_STEP : 0);

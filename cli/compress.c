@@ -27,19 +27,6 @@ typedef struct compress_command {
 
 enum { NOT_GIVEN = -1 };
 
-static weft_code read_tables(const weft_option *option, const char *text, void *values, weft_error *error)
-{
-    (void)option;
-    int *components = &((compress_command *)values)->options.table_components;
-    unsigned long long given = 0;
-    if (strcmp(text, "8bit") != 0 && strncmp(text, "pca:", 4) != 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "--tables is 8bit or pca:K, not '%s'", text);
-    if (strcmp(text, "8bit") != 0)
-        WEFT_TRY(weft_option_whole("tables pca:", text + 4, 1, WEFT_BASIS_MAX_COMPONENTS, &given, error));
-    *components = (int)given;
-    return WEFT_OK;
-}
-
 static weft_code read_budget(const weft_option *option, const char *text, void *values, weft_error *error)
 {
     double megabytes;
@@ -97,10 +84,6 @@ static const weft_option option_table[] = {
     {"light-table", .argument = "on|off",
      .help = "Light table S beside T, as large and several times the time; where lights repeat (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.light_table)},
-    {"tables", .argument = "8bit|pca:K",
-     .help = "Store T and S in 8 bits for each direction, or by K principal components across texels: a fraction of "
-             "the size; lobes are fitted to what is stored, in a second pass (default: 8bit)",
-     .read = read_tables},
     {"weights", .argument = "even|screen",
      .help = "What an error of a sample counts for. even: all alike, least squares. screen: less the brighter the "
              "sample, as a screen shows it; where lobes cannot follow a highlight, its surroundings keep their colour "
@@ -183,22 +166,19 @@ static weft_code check_preset(const compress_command *command, weft_error *error
 {
     const weft_compress_options usual = weft_compress_default_options(), *o = &command->options;
     bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->components != NOT_GIVEN ||
-                  o->light_table || o->table_components > 0 || o->rounded || o->frames != usual.frames ||
-                  chooses_by_texel(o);
+                  o->light_table || o->rounded || o->frames != usual.frames || chooses_by_texel(o);
     if (wish_of(command).preset == WEFT_PRESET_NONE || !chosen)
         return WEFT_OK;
-    return weft_fail(
-        error, WEFT_BAD_USAGE,
-        "--preset and --fps choose the model: leave out --lobes, --table, --light-table, --tables, --components, "
-        "--rounding, --frames, --error and --budget");
+    return weft_fail(error, WEFT_BAD_USAGE,
+                     "--preset and --fps choose the model: leave out --lobes, --table, --light-table, --components, "
+                     "--rounding, --frames, --error and --budget");
 }
 
 /* Where components are chosen by the number of photographs, weft_compress says it. */
 static weft_code check_rounding(const compress_command *command, weft_error *error)
 {
     const weft_compress_options *o = &command->options;
-    bool of_lobes = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || o->light_table ||
-                    o->table_components > 0 || chooses_by_texel(o);
+    bool of_lobes = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || o->light_table || chooses_by_texel(o);
     if (!o->rounded || command->components > 0 || (command->components == NOT_GIVEN && !of_lobes))
         return WEFT_OK;
     return weft_fail(error, WEFT_BAD_USAGE, "--rounding is for components: ask for some with --components");
@@ -219,9 +199,6 @@ static weft_code check(void *values, weft_error *error)
                          "--error and --budget choose lobes and tables for each texel: leave out --components");
     if (o->target_error > 0 && o->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "give --error or --budget, not both");
-    if (o->table_components > 0 && chooses)
-        return weft_fail(error, WEFT_BAD_USAGE,
-                         "--tables pca:K is shared by all texels: leave out --error and --budget");
     if (command->report && !chooses)
         return weft_fail(error, WEFT_BAD_USAGE,
                          "--report needs --error or --budget: else all texels have the same model");

@@ -48,8 +48,6 @@ static void say_model(const weft_compressed *done)
         weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
                          layout->image_count, report->lobe_count, table,
                          report->light_count > 0 ? " and a light table" : "");
-    if (options->table_components > 0 && report->table_components == 0)
-        weft_command_say(common, "these images carry no tables: --tables changes nothing");
     if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
     if (has_components_alone(options))

@@ -10,7 +10,6 @@
 #include "compress/run/given_frames.h"
 #include "compress/run/memory.h"
 #include "compress/run/opacity.h"
-#include "compress/run/table_pca.h"
 #include "compress/sparse/sparse_material.h"
 
 #include <inttypes.h>
@@ -36,8 +35,7 @@ static int components_for(int images)
 /* Whether the options name what only lobes have. */
 static bool ask_for_lobes(const weft_compress_options *options)
 {
-    return options->target_error > 0 || options->budget_bytes > 0 || options->light_table ||
-           options->table_components > 0;
+    return options->target_error > 0 || options->budget_bytes > 0 || options->light_table;
 }
 
 /* Frames and exponents of lobes ask for them, too, but where images are scattered they are idle beside components. */
@@ -211,25 +209,6 @@ static weft_code fit_chosen(fitting *work, const weft_texel_source *source, cons
     return source->target_error > 0 ? weft_material_find_models(material, error) : WEFT_OK;
 }
 
-/* Tables by components, and the lobes fitted to them in a second pass over the samples. That needs no checkpoint: what
- * it starts from is the first pass, which has one. */
-static weft_code reduce_tables(fitting *work, const weft_texel_source *source, const weft_dense_job *job,
-                               weft_material *material, weft_dense_result *result, weft_error *error)
-{
-    weft_texel_source again = *source;
-    weft_dense_job alone = *job;
-    weft_dense_result second;
-    WEFT_TRY(weft_material_reduce_tables(source->layout, source->held_out, material, work->options->table_components,
-                                         error));
-    again.tables = material;
-    alone.checkpoint_path = NULL;
-    WEFT_TRY(weft_dense_fit(work->dataset, &again, &alone, material, &second, error));
-    result->times.bytes += second.times.bytes;
-    result->times.reading += second.times.reading;
-    result->times.starving += second.times.starving;
-    return WEFT_OK;
-}
-
 static weft_code fit_dense(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_compress_options *options = work->options;
@@ -259,10 +238,6 @@ static weft_code fit_dense(fitting *work, weft_material *material, weft_compress
     weft_code code = fit_chosen(work, &source, &job, material, &result, error);
     work->checkpoint = result.checkpoint;
     WEFT_TRY(code);
-    if (options->table_components > 0 && material->view_count + material->light_count > 0) {
-        WEFT_TRY(reduce_tables(work, &source, &job, material, &result, error));
-        report->table_components = options->table_components;
-    }
     /* What is free is given back to the system, so that writing the material has room. */
     malloc_trim(0);
     work->counts = result.counts;

@@ -17,7 +17,6 @@ typedef struct weft_compress_report {
     weft_compress_model model;
     int lobe_count;          /* of the material */
     int light_count;         /* directions of S; 0 without */
-    int table_components;    /* that T and S are stored by; 0: by 8 bits, or there are none */
     long sample_count;       /* of level 0: texels times images that were not held out */
     long masked_count;       /* of these, not used: masked, not finite, or light below the horizon */
     long texel_count;        /* of all levels */

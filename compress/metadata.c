@@ -119,8 +119,6 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         weft_json_put(&fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
     if (options->component_count > 0)
         weft_json_put(&fit, "components", describe_components(options, &report->components));
-    if (report->table_components > 0)
-        weft_json_put(&fit, "table_components", json_integer(report->table_components));
     if (report->model == WEFT_COMPRESS_SPARSE) {
         weft_json_put(&fit, "largest_exponent", json_real(setting->largest_exponent));
         weft_json_put(&fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));

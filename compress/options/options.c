@@ -31,12 +31,6 @@ weft_code weft_compress_options_check(const weft_compress_options *options, cons
         return weft_fail(error, WEFT_BAD_USAGE, "largest exponent is %g, must be 1 to 60000", options->max_exponent);
     if (!(options->target_error >= 0 && options->target_error <= 1))
         return weft_fail(error, WEFT_BAD_USAGE, "target error is %g, must be 0 to 1", options->target_error);
-    if (options->table_components < 0 || options->table_components > WEFT_BASIS_MAX_COMPONENTS)
-        return weft_fail(error, WEFT_BAD_USAGE, "%d components of tables asked for, must be 1 to %d",
-                         options->table_components, WEFT_BASIS_MAX_COMPONENTS);
-    if (options->table_components > 0 && (options->target_error > 0 || options->budget_bytes > 0))
-        return weft_fail(error, WEFT_BAD_USAGE,
-                         "components of tables are shared by all texels: no target error or budget for each of them");
     if (options->target_error > 0 && options->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "a target error and a budget exclude each other");
     if (options->rounded && options->component_count == 0)

@@ -52,7 +52,6 @@ typedef struct weft_compress_options {
                      first, which have 15 bits then: it tells what rounding costs. At most 32 components */
     bool rounded; /* components are rounded where what they leave hides it (btf/material/component_rounding.h) */
     bool heights; /* components are seen through those of the dataset, where it has some (`weft relief`) */
-    int table_components;    /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */

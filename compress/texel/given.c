@@ -4,12 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A term that glares where a table of components is brighter than the one that was fitted must not take the others
- * with it: each alone keeps below this share of the limit, round by round less, until their sum does. In the last round
- * four terms together have 0.93 of it. */
-#define HOLD_SHARE 0.785
-enum { HOLD_ROUNDS = 6 };
-
 static void load_channel(weft_texel_fitter *fitter, const weft_candidate *from, const weft_material_level *level,
                          size_t texel, int channel, const weft_frame *frame)
 {
@@ -59,47 +53,4 @@ weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, in
                 is_refused ? INFINITY : (float)sums.square_error;
     }
     return sums;
-}
-
-/* Terms that fit tables which are given, none above its own of `most`. */
-static void solve_channel(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, const double *most)
-{
-    weft_fit *fit = &fitter->now.as_read[channel];
-    weft_frame frame = fit->frame;
-    const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)fitter->bundle.view_count;
-    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
-    weft_pack_given_table(&fitter->bundle, &lit, channel, options, fitter->workspace, fit, code, most,
-                          &fitter->now.packed[channel]);
-    *fit = weft_unpack(&fitter->now.packed[channel], options->lobe_count, &frame, fitter->samples.scale);
-}
-
-static void refit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, int channel)
-{
-    double most[WEFT_LINEAR_MAX], share = 1;
-    for (int j = 0; j < WEFT_LINEAR_MAX; j++)
-        most[j] = weft_pack_largest_term(&fitter->now.as_read[channel]);
-    solve_channel(fitter, options, channel, most);
-    for (int round = 0; round < HOLD_ROUNDS && weft_texel_exceeds(fitter, channel); round++) {
-        share *= HOLD_SHARE;
-        weft_texel_limit_terms(fitter, channel, share, most);
-        solve_channel(fitter, options, channel, most);
-        fitter->now.held = true;
-    }
-    weft_texel_hold(fitter, channel, NULL);
-}
-
-void weft_texel_refit(weft_texel_fitter *fitter, const weft_material *from, int level, size_t texel)
-{
-    const weft_candidate whole = {from, {from->lobe_count, 8, 8}};
-    const weft_material_level *at = &from->level[level];
-    weft_frame frame = weft_frame_decode(at->frame + 3 * texel);
-    weft_fit_options options = fitter->source->options;
-    options.lobe_count = from->lobe_count;
-    memcpy(fitter->now.frame, at->frame + 3 * texel, sizeof fitter->now.frame);
-    fitter->now.turns = fitter->now.second_start = fitter->now.held = false;
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        load_channel(fitter, &whole, at, texel, channel, &frame);
-        if (fitter->samples.energy[channel] > 0)
-            refit_channel(fitter, &options, channel);
-    }
 }

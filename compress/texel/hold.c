@@ -130,23 +130,6 @@ bool weft_texel_is_too_bright(weft_texel_fitter *fitter)
     return any;
 }
 
-void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most)
-{
-    weft_peak_tables tables = decode_tables(fitter, channel);
-    weft_peak limit = fitter->most[channel];
-    const weft_fit *fit = &fitter->now.as_read[channel];
-    for (int j = 0; j <= fit->lobe_count; j++) {
-        weft_fit alone = {.diffuse = j == 0, .frame = fit->frame, .lobe_count = j > 0};
-        if (j > 0) {
-            alone.lobe[0] = fit->lobe[j - 1];
-            alone.lobe[0].amplitude = 1;
-        }
-        weft_peak peak = weft_peak_of_fit(&fitter->net[1], &alone, &tables);
-        double largest = fmin(limit.r / peak.r, limit.f / peak.f);
-        most[j] = fmin(most[j], share * largest);
-    }
-}
-
 void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options)
 {
     weft_peak most = fitter->most[channel];
@@ -156,13 +139,13 @@ void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_opti
     weft_peak_tables tables = decode_tables(fitter, channel);
     weft_peak peak = weft_peak_of_fit(&fitter->net[1], fit, &tables);
     fitter->now.held = true;
-    if (options && options->table) {
+    if (options->table) {
         lower_table(fitter, channel, most);
         return;
     }
     /* Terms may add up. */
     double term = FOR_ROUNDING * fmin(most.r, most.f);
-    for (int round = 0; round < 4 && options && options->lobe_count > 0 && exceeds(peak, most); round++) {
+    for (int round = 0; round < 4 && options->lobe_count > 0 && exceeds(peak, most); round++) {
         fit_dimmer(fitter, channel, options, round, term);
         peak = weft_peak_of_fit(&fitter->net[1], fit, &tables);
         term *= 0.75;

@@ -196,30 +196,3 @@ void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, i
     solve_rest(bundle, trial, decoded, frozen, most, &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }
-
-double weft_pack_largest_term(const weft_fit *fit)
-{
-    double largest = fit->diffuse;
-    for (int i = 0; i < fit->lobe_count; i++)
-        largest = fmax(largest, fit->lobe[i].amplitude);
-    return fmax(2 * largest, WEFT_LARGEST_AMPLITUDE);
-}
-
-void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
-                           const uint8_t *code, const double *most, weft_packed *packed)
-{
-    weft_trial *trial = &workspace->trial[0];
-    weft_fit rounded = *fit;
-    double *decoded = workspace->scratch[0];
-    for (int i = 0; i < fit->lobe_count; i++)
-        rounded.lobe[i].amplitude = fmin(rounded.lobe[i].amplitude, most[1 + i]);
-    unsigned frozen = freeze_sharp(&rounded, samples->scale);
-    for (int view = 0; view < bundle->view_count; view++)
-        decoded[view] = options->table ? weft_table_of_code(code[view]) : 1;
-    trial->fit = rounded;
-    weft_workspace_pass(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, decoded),
-                        trial);
-    solve_rest(bundle, trial, decoded, frozen, most, &rounded);
-    weft_pack_rounded(&rounded, samples->scale, packed);
-}

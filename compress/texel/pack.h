@@ -24,16 +24,6 @@ void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, i
                        const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
                        const double *table, weft_packed *packed, uint8_t *code);
 
-/* Rounds a fit whose T will be read as `code` whatever the fit thought of it: rho and the lower lobes are solved for
- * again, each at most most[0] and most [1 + lobe]. High lobes are lowered to it. One pass. */
-void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
-                           const uint8_t *code, const double *most, weft_packed *packed);
-
-/* A bound for each term of such a fit that cuts none off: terms that took something over from T once may lie beyond
- * the bound of the fit; twice the largest is allowed. Pure. */
-double weft_pack_largest_term(const weft_fit *fit);
-
 /* Rounds a fit as it is, `scale` times larger. Pure. */
 void weft_pack_rounded(const weft_fit *fit, double scale, weft_packed *packed);
 

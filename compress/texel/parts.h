@@ -77,7 +77,7 @@ void weft_texel_limit(weft_texel_fitter *fitter);
 
 /* Holds a channel of the last model, fitted and packed, to that limit everywhere on the hemisphere. Lowers T of the
  * views that it would glare in or between. Without T, fits again with lobes that may not be so bright. Lowers all terms
- * where that does not suffice, or where nothing is to be fitted: `options`, those of the fit, is then NULL. */
+ * where that does not suffice. `options` are those of the fit. */
 void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options);
 
 /* Whether a channel of the last model, T and S as their codes are now, exceeds that limit. */
@@ -85,10 +85,6 @@ bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel);
 
 /* Whether any channel does. */
 bool weft_texel_is_too_bright(weft_texel_fitter *fitter);
-
-/* Lowers most [1 + lobe_count], rho first, to the amplitudes with which each term of a channel alone has `share` of
- * that limit at its brightest. */
-void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most);
 
 /* Squared error of the last model as it will be read, by the weights that it was fitted with. */
 double weft_texel_weighted_error(weft_texel_fitter *fitter);
@@ -99,8 +95,5 @@ weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied);
 /* Measures every candidate of the source's judgement; returns the sums of the last. One whose codes exceed the limit
  * only since they were rounded leaves an infinite error. */
 weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, int y);
-
-/* Lobes for tables that are given. */
-void weft_texel_refit(weft_texel_fitter *fitter, const weft_material *from, int level, size_t texel);
 
 #endif

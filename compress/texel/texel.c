@@ -403,10 +403,7 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     fitter->most_lobes = whole.lobe_count;
     weft_frame frame;
     const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
-    if (fitter->source->tables)
-        weft_texel_refit(fitter, fitter->source->tables, level,
-                         (size_t)y * (size_t)material->level[level].width + (size_t)x);
-    else if (fitter->source->target_error > 0)
+    if (fitter->source->target_error > 0)
         fit_to_target(fitter, &whole, given, counts);
     else
         counts->stepped_down += fit_best(fitter, &whole, given);

@@ -24,9 +24,6 @@ typedef struct weft_texel_source {
     /* Each texel has the smallest model (compress/texel/model_ladder.h) whose RMSE over the rms of its samples is at
      * most this; the whole of `options` where none is. 0: the whole everywhere. */
     double target_error;
-    /* Not NULL: frames, tables and lobes are those of this material; rho and the lobes' amplitudes are fitted again to
-     * its tables as they are. It may be the material that is written. */
-    const weft_material *tables;
     const weft_judgement *judgement; /* not NULL: nothing is fitted and stored, these candidates are measured */
 } weft_texel_source;
 

@@ -64,6 +64,5 @@ expect_completed "silk.btf.h5 silk.weft stage" play s
 expect_completed "night" register ni
 expect_completed "" nonsense ""
 expect_completed "" compress --lobes = ""
-expect_completed "8bit pca:" compress --tables ""
 expect_completed "silk.btf.h5" compress --lobes = 2 silk.b
 echo "$passed passed, 0 failed"

@@ -78,7 +78,7 @@ PYTHON
     [ "$(ls -A | grep -c held-out)" = 0 ] || fail "compress $asked leaves files behind"
 done
 
-for option in "--lobes 2" "--table off" "--components 8" "--tables pca:4" "--light-table on" "--rounding on" "--frames off" "--error 5" "--budget 1"; do
+for option in "--lobes 2" "--table off" "--components 8" "--light-table on" "--rounding on" "--frames off" "--error 5" "--budget 1"; do
     # shellcheck disable=SC2086
     expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --preset small $option
 done

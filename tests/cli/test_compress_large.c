@@ -137,7 +137,7 @@ static void killed_again_and_again_it_ends_with_the_same_bytes(void **state)
 static void other_models_go_on_as_well(void **state)
 {
     (void)state;
-    const char *const option[][4] = {{"--error", "25"}, {"--light-table", "on"}, {"--tables", "pca:3"}};
+    const char *const option[][4] = {{"--error", "25"}, {"--light-table", "on"}};
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
         disturbed got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option[i]);
         expect_says(&got, 0, "fitted in");
@@ -279,7 +279,6 @@ static void other_ways_to_store_keep_to_the_memory_too(void **state)
     skip(); /* its allocator keeps what is freed */
 #endif
     expect_little_memory_suffices("--budget", "0.3");
-    expect_little_memory_suffices("--tables", "pca:8");
 }
 
 static void little_memory_changes_no_byte_and_is_not_exceeded(void **state)

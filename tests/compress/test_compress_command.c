@@ -168,7 +168,6 @@ static void options_that_change_nothing_are_named(void **state)
                      0);
     assert_null(strstr(said, "changes nothing"));
     write_few_images(1, 12);
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --tables pca:2", 0, "--tables changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --light-table on", 0, "--light-table changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --weights screen", 0, "--weights changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --frames off", 0, "--frames changes nothing");
@@ -214,9 +213,8 @@ static void components_are_the_default_and_their_number_is_that_of_the_photograp
 static void what_only_lobes_have_asks_for_lobes(void **state)
 {
     (void)state;
-    static const char *const options[] = {"--lobes 2",      "--table on",       "--components 0",
-                                          "--frames off",   "--max-exponent 9", "--light-table on",
-                                          "--tables pca:2", "--error 50",       "--budget 1"};
+    static const char *const options[] = {"--lobes 2",        "--table on",       "--components 0", "--frames off",
+                                          "--max-exponent 9", "--light-table on", "--error 50",     "--budget 1"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++)
         expect_model(4, 12, options[i], 0, 2);
     expect_model(4, 12, "--components 4", 4, 0);

@@ -153,7 +153,6 @@ static void the_file_says_the_error_of_its_reader_at_every_gain(void **state)
         compress_and_read("--table off --lobes 0");
         compress_and_read("--light-table on");
         compress_and_read("--weights screen --lobes 1");
-        compress_and_read("--tables pca:4");
         compress_and_read("--error 20");
         compress_and_read("--budget 0.006");
         write_dataset(1, SIDE);

@@ -143,11 +143,6 @@ static void amplitudes_take_back_what_a_large_table_had(void **state)
         decoded[view] = weft_table_of_code(code[view]);
     weft_fit stored = weft_unpack(&packed, 1, &fit.frame, fixture->samples.scale);
     assert_true(texel_fixture_error(fixture, 0, &stored, decoded) < 0.03);
-    const double most[WEFT_LINEAR_MAX] = {weft_pack_largest_term(&stored), weft_pack_largest_term(&stored)};
-    weft_pack_given_table(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace, &stored, code, most,
-                          &packed);
-    stored = weft_unpack(&packed, 1, &fit.frame, fixture->samples.scale);
-    assert_true(texel_fixture_error(fixture, 0, &stored, decoded) < 0.03);
 }
 
 static void frames_survive_packing(void **state)
