@@ -247,10 +247,6 @@ int main(int argc, char **argv)
     testing t = {.name = argv[1], .model = argv[2], .side = side, .options = weft_compress_default_options()};
     weft_error error = {0};
     t.options.component_count = is_components ? 16 : 0;
-    if (is_components) {
-        t.options.lobe_count = 0;
-        t.options.table = false;
-    }
     weft_code code = test(&t, &error);
     if (code != WEFT_OK)
         fprintf(stderr, "%s\n", error.message);

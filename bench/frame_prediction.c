@@ -47,8 +47,6 @@ static void compress(const char *path, int components, weft_material material[MA
     weft_dataset *dataset;
     weft_compress_options options = weft_compress_default_options();
     options.component_count = components;
-    options.lobe_count = components > 0 ? 0 : 2;
-    options.table = components == 0;
     stop_on(weft_dataset_open(path, &dataset, &error), &error);
     weft_dataset *block = take_texels(dataset);
     options.heights = false; /* those of the whole are given afterwards */

@@ -1,7 +1,6 @@
-/* Whether what weft compress predicts is what it measures afterwards: `bench_prediction NAME.btf.h5 MODEL...`, a MODEL
- * being layersK, lobesN (with T where the images carry it), errorPERCENT or budgetKB. Prints predicted and measured
- * bytes of the file, metadata and all, and the error on directions that are not fitted. The presets predict the models
- * that they choose in the same way. */
+/* Whether what a preset of weft compress predicts is what it measures afterwards: `bench_prediction NAME.btf.h5
+ * PRESET...`. Prints predicted and measured bytes of the file, metadata and all, and the error on directions that are
+ * not fitted. */
 #include "bench/measure.h"
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
@@ -20,21 +19,13 @@ static void stop_on(weft_code code, const weft_error *error)
     bench_stop_on("bench_prediction", code, error);
 }
 
-static weft_compress_options options_of(const char *model)
+static weft_preset preset_named(const char *name)
 {
-    weft_compress_options options = weft_compress_default_options();
-    size_t letters = strcspn(model, "0123456789");
-    double number = atof(model + letters);
-    bool has_components = strncmp(model, "components", letters) == 0;
-    options.component_count = has_components ? (int)number : 0;
-    options.table = !has_components;
-    if (has_components || strncmp(model, "lobes", letters) == 0)
-        options.lobe_count = has_components ? 0 : (int)number;
-    else if (strncmp(model, "error", letters) == 0)
-        options.target_error = number / 100;
-    else
-        options.budget_bytes = (uint64_t)(1000 * number);
-    return options;
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++)
+        if (strcmp(weft_preset_name(preset), name) == 0)
+            return preset;
+    fprintf(stderr, "bench_prediction: '%s' is no preset\n", name);
+    exit(WEFT_BAD_USAGE);
 }
 
 /* As weft compress makes it. */
@@ -43,13 +34,10 @@ static uint64_t make(weft_dataset *dataset, weft_compress_options options, const
 {
     weft_error error = {0};
     weft_material material;
-    uint64_t own, bytes;
+    uint64_t bytes;
     int splits;
     stop_on(weft_hold_out_enough_splits(weft_dataset_get_layout(dataset), &splits, &error), &error);
     stop_on(weft_hold_out_measure(dataset, &options, splits, scratch, NULL, held_out, &error), &error);
-    stop_on(weft_hold_out_bytes(held_out, &options.added_bytes, &error), &error);
-    stop_on(weft_prediction_stored_bytes(prediction, &own, &error), &error);
-    options.added_bytes += own;
     options.heights = !held_out->heights.asked || held_out->heights.used;
     stop_on(weft_compress(dataset, &options, NULL, &material, NULL, &error), &error);
     stop_on(weft_hold_out_store(held_out, &material, &error), &error);
@@ -61,9 +49,9 @@ static uint64_t make(weft_dataset *dataset, weft_compress_options options, const
 
 static void compare(weft_dataset *dataset, const char *name)
 {
-    const weft_preset_wish wish = {.preset = WEFT_PRESET_NONE};
+    const weft_preset_wish wish = {.preset = preset_named(name)};
     weft_error error = {0};
-    weft_compress_options options = options_of(name);
+    weft_compress_options options = weft_compress_default_options();
     weft_prediction prediction;
     weft_hold_out held_out;
     stop_on(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
@@ -80,7 +68,7 @@ int main(int argc, char **argv)
     weft_error error = {0};
     weft_dataset *dataset;
     if (argc < 3) {
-        fprintf(stderr, "usage: bench_prediction NAME.btf.h5 MODEL...\n");
+        fprintf(stderr, "usage: bench_prediction NAME.btf.h5 PRESET...\n");
         return WEFT_BAD_USAGE;
     }
     stop_on(weft_dataset_open(argv[1], &dataset, &error), &error);

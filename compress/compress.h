@@ -6,8 +6,10 @@
 #include "compress/components/components_fit.h"
 #include "compress/options/options.h"
 
-/* What the number of samples a texel allows: at least four for every free parameter. */
+/* What is fitted: components, or what of lobes the number of samples a texel allows: at least four for every free
+ * parameter. */
 typedef enum weft_compress_model {
+    WEFT_COMPRESS_COMPONENTS,
     WEFT_COMPRESS_TABLE, /* every texel alone, lobes and T */
     WEFT_COMPRESS_LOBES, /* every texel alone, lobes only */
     WEFT_COMPRESS_SPARSE /* a handful of images: neighbours share normal and exponent, amplitudes are the texel's own */
@@ -16,42 +18,29 @@ typedef enum weft_compress_model {
 typedef struct weft_compress_report {
     weft_compress_model model;
     int lobe_count;          /* of the material */
-    int light_count;         /* directions of S; 0 without */
     long sample_count;       /* of level 0: texels times images that were not held out */
     long masked_count;       /* of these, not used: masked, not finite, or light below the horizon */
-    long texel_count;        /* of all levels */
-    long empty_texel_count;  /* without any valid sample; they are black */
+    long texel_count;        /* that were fitted: of all levels, of components those of level 0 */
+    long empty_texel_count;  /* of these, without any valid sample; they are black */
     long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
     long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
-    long missed_texel_count; /* that no model brings to the target error */
-    long held_texel_count;   /* that would have exceeded WEFT_BRIGHTEST_MULTIPLE */
-    long stepped_down_count; /* that a smaller model serves better than the whole */
     weft_components_report components; /* where there are any */
     double seconds;
-    long block_count;         /* of a dense model */
+    long block_count;         /* of the dataset; 0 of a sparse model, which reads rows */
     long resumed_block_count; /* of these, taken from the checkpoint */
     double read_bytes;        /* of samples and masks */
     double read_seconds;      /* that the reading thread read */
     double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
-/* The options with WEFT_COMPONENTS_AUTOMATIC decided: where nothing is asked for that only lobes and tables can give,
- * there are 8 components for fewer than 20 images, 16 for fewer than 100, else 32, and a diffuse term beside them; none
- * for fewer than 20 near images, which are fitted by the sparse model. Frames and exponents other than the usual ask
- * for lobes where images are no list (weft_images_are_scattered, compress/components/components_fit.h). weft_compress
- * decides so by itself. Pure. */
+/* The options with WEFT_COMPONENTS_AUTOMATIC decided: 8 components for fewer than 20 images, 16 for fewer than 100,
+ * else 32; none for fewer than 20 near images, which are fitted by the sparse model. weft_compress decides so by
+ * itself. Pure. */
 weft_compress_options weft_compress_settle(const weft_compress_options *options, const weft_dataset *dataset);
 
-/* The model that weft_compress fits to a dataset with this layout, and how many lobes. Pure. */
+/* The model that weft_compress fits to a dataset with this layout with settled options, and how many lobes. Pure. */
 weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
                                        int *lobe_count);
-
-/* The budget for `part`, some texels of `whole`, fitted with mip levels or without: what the budget of the options
- * leaves for texels, in proportion to their number, and what a file has besides. 0 where the options have no budget.
- * Errors: WEFT_SYSTEM for memory. */
-weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
-                                     bool part_has_levels, const weft_compress_options *options, uint64_t *bytes,
-                                     weft_error *error);
 
 /* Gives the components of a material the heights of the dataset; does nothing where either has none. Errors: those of
  * reading; WEFT_SYSTEM for memory. */
@@ -60,11 +49,10 @@ weft_code weft_compress_take_heights(weft_dataset *dataset, weft_material *mater
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
  * result depends neither on the number of threads (OpenMP) nor, but for components, on the order of the images, the
  * memory allowed or whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing
- * else may use the dataset meanwhile. With a target or a budget the material says which model each texel has. Errors:
- * WEFT_BAD_USAGE for options out of range, a target and a budget together, a budget that nothing fits into, where every
- * image is held out, or where the memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any valid
- * sample; those of reading; WEFT_SYSTEM for memory and for a checkpoint that cannot be opened or written, which then
- * keeps what is in it. */
+ * else may use the dataset meanwhile. Errors: WEFT_BAD_USAGE for options out of range, where every image is held out,
+ * or where the memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any valid sample; those of
+ * reading; WEFT_SYSTEM for memory and for a checkpoint that cannot be opened or written, which then keeps what is in
+ * it. */
 weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
                         weft_material *material, weft_compress_report *report, weft_error *error);
 

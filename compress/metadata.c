@@ -6,23 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIT_BYTES = 2048 /* of metadata besides the provenance, of lobes: components have no budget */ };
-
 const char *weft_compress_model_name(weft_compress_model model)
 {
-    static const char *const name[] = {"lobes and view table", "lobes", "sparse"};
+    static const char *const name[] = {"components", "lobes and view table", "lobes", "sparse"};
     return name[model];
-}
-
-weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64_t *bytes, weft_error *error)
-{
-    json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    size_t size = provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0;
-    json_decref(provenance);
-    if (size == 0)
-        return weft_fail_memory(error, "provenance", strlen(layout->provenance));
-    *bytes = FIT_BYTES + size;
-    return WEFT_OK;
 }
 
 /* As in compress/kriging/covariance.h: base 2 logarithms of variances and lengths. */
@@ -88,41 +75,31 @@ static json_t *describe_components(const weft_compress_options *options, const w
     return components;
 }
 
-/* Components are what is drawn. What lies beside them is named where it was asked for. */
-static json_t *name_model(const weft_compress_options *options, const weft_compress_report *report)
+static void describe_lobes(const weft_compress_report *report, const weft_sparse_setting *setting, json_t **fit)
 {
-    const char *beside = weft_compress_model_name(report->model);
-    if (options->component_count == 0)
-        return json_string(beside);
-    return report->lobe_count > 0 ? json_sprintf("components beside %s", beside) : json_string("components");
+    double texels = (double)(report->texel_count > 0 ? report->texel_count : 1);
+    weft_json_put(fit, "lobes", json_integer(report->lobe_count));
+    weft_json_put(fit, "turned_frames", json_real((double)report->turned_frame_count / texels));
+    weft_json_put(fit, "retro_reflective_starts", json_real((double)report->second_start_count / texels));
+    if (report->model != WEFT_COMPRESS_SPARSE)
+        return;
+    weft_json_put(fit, "largest_exponent", json_real(setting->largest_exponent));
+    weft_json_put(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
 }
 
 static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
                             const weft_sparse_setting *setting)
 {
-    double texels = (double)(report->texel_count > 0 ? report->texel_count : 1);
-    json_t *fit = json_pack(
-        "{s:o, s:i, s:f, s:I, s:I, s:I, s:I, s:f, s:f}", "model", name_model(options, report), "lobes",
-        report->lobe_count, "largest_exponent", options->max_exponent, "samples", (json_int_t)report->sample_count,
-        "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
-        (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
-        "retro_reflective_starts", (double)report->second_start_count / texels);
-    weft_json_put(&fit, "held_texels", json_integer((json_int_t)report->held_texel_count));
-    weft_json_put(&fit, "texels_with_smaller_model", json_integer((json_int_t)report->stepped_down_count));
+    json_t *fit =
+        json_pack("{s:s, s:I, s:I, s:I, s:I}", "model", weft_compress_model_name(report->model), "samples",
+                  (json_int_t)report->sample_count, "masked_samples", (json_int_t)report->masked_count, "texels",
+                  (json_int_t)report->texel_count, "empty_texels", (json_int_t)report->empty_texel_count);
     if (options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
         weft_json_put(&fit, "weights", json_string("screen"));
-    if (options->target_error > 0) {
-        weft_json_put(&fit, "target_error", json_real(options->target_error));
-        weft_json_put(&fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
-    }
-    if (options->budget_bytes > 0)
-        weft_json_put(&fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
-    if (options->component_count > 0)
+    if (report->model == WEFT_COMPRESS_COMPONENTS)
         weft_json_put(&fit, "components", describe_components(options, &report->components));
-    if (report->model == WEFT_COMPRESS_SPARSE) {
-        weft_json_put(&fit, "largest_exponent", json_real(setting->largest_exponent));
-        weft_json_put(&fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
-    }
+    else
+        describe_lobes(report, setting, &fit);
     return fit;
 }
 

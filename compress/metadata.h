@@ -9,10 +9,6 @@
 /* A constant. Pure. */
 const char *weft_compress_model_name(weft_compress_model model);
 
-/* Of the metadata, at most: its numbers may be longer than those of the provenance that they come from. Errors:
- * WEFT_SYSTEM. */
-weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64_t *bytes, weft_error *error);
-
 /* Replaces the metadata of `material` by {"provenance": of the dataset, "dataset": its fingerprint, "fit": what was
  * done}. There is no time of day in it and no duration, so that equal input gives equal bytes. `setting` is that of a
  * sparse model. Errors: WEFT_SYSTEM for memory. */

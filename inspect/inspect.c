@@ -9,8 +9,8 @@
 #include "btf/material/held_out.h"
 #include "btf/material/models.h"
 #include "btf/session/camera_list.h"
-#include "inspect/verify.h"
 #include "geometry/yarn/tile_mesh.h"
+#include "inspect/verify.h"
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
 
@@ -83,10 +83,14 @@ static json_t *describe_level(const weft_material *material, int k)
 {
     const weft_material_level *level = &material->level[k];
     const weft_error_summary *e = &level->error;
-    json_t *described =
-        json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:o}", "texels", level->width, level->height, "median_relative_error",
-                  e->median_relative, "percentile80_relative_error", e->percentile80_relative, "rmse", e->rmse,
-                  "relative_rmse", e->relative_rmse, "psnr_db", weft_json_number(e->psnr_db));
+    json_t *described = json_pack("{s:[ii]}", "texels", level->width, level->height);
+    if (k > 0 && weft_material_has_components_alone(material))
+        return described;
+    weft_json_put(&described, "median_relative_error", json_real(e->median_relative));
+    weft_json_put(&described, "percentile80_relative_error", json_real(e->percentile80_relative));
+    weft_json_put(&described, "rmse", json_real(e->rmse));
+    weft_json_put(&described, "relative_rmse", json_real(e->relative_rmse));
+    weft_json_put(&described, "psnr_db", weft_json_number(e->psnr_db));
     put_basis(&described, "components_of_T", level->table_basis);
     put_basis(&described, "components_of_S", level->light_table_basis);
     if (material->components)
@@ -101,7 +105,8 @@ static json_t *describe_level(const weft_material *material, int k)
 static json_t *describe_error(const weft_material *material, const weft_hold_out *held_out)
 {
     json_t *described = json_object();
-    const char *name = !material->components      ? "fitted_level_0"
+    bool is_all = !material->components || weft_material_has_components_alone(material);
+    const char *name = is_all                     ? "fitted_level_0"
                        : material->lobe_count > 0 ? "fitted_level_0_lobes"
                                                   : "fitted_level_0_diffuse_term";
     if (held_out) {

@@ -24,7 +24,7 @@ for stitch in plain_knit:40x32 purl_knit:40x32 two_colour_loops:32x32 satin:32x3
     [ -e "$name.btf.h5" ] || "$weft" simulate "$stitches/$name.stitch" --size "${stitch#*:}" --noise 3 --plane top --heights off -o "$name.btf.h5"
     "$weft" compress "$name.btf.h5" --lobes 2 -o "$name.weft"
 done
-"$weft" compress two_colour_loops.btf.h5 --table off -o lobes.weft
+"$weft" compress two_colour_loops.btf.h5 --lobes 1 -o lobes.weft
 
 # With and without mip levels.
 drape="--shadows=on --no-labels --quiet --size 420x380"

@@ -41,6 +41,9 @@ typedef struct weft_option {
     size_t offset; /* of the value in the target */
     double low, high, divisor;
     const char *const *words; /* end with NULL */
+    const char *former_name;  /* an older name that is accepted, with a note; NULL: none */
+    const char *gone;         /* not NULL: the option was removed, and this is to be done instead */
+    const char *usual;        /* its value where it is not given, which the help adds; NULL: what the target has */
     /* Takes the place of what the kind would do. Errors: WEFT_BAD_USAGE with a message that names the option. */
     weft_code (*read)(const struct weft_option *option, const char *text, void *target, weft_error *error);
 } weft_option;

@@ -202,10 +202,22 @@ void weft_material_free(weft_material *material)
     *material = (weft_material){0};
 }
 
+bool weft_material_has_components_alone(const weft_material *material)
+{
+    const weft_material_level *finest = &material->level[0];
+    size_t halves = 4 * (size_t)finest->width * (size_t)finest->height;
+    bool is_black = material->components && material->lobe_count == 0;
+    for (size_t i = 0; is_black && i < halves; i++)
+        is_black = finest->diffuse[i] == 0;
+    return is_black;
+}
+
 const char *weft_material_errors_of(const weft_material *material)
 {
     if (!material->components)
         return NULL;
+    if (weft_material_has_components_alone(material))
+        return "components";
     return material->lobe_count > 0 ? "lobes beside the components" : "diffuse term beside the components";
 }
 

@@ -92,8 +92,12 @@ void weft_material_take_seen(weft_material *material, weft_seen *seen);
 /* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
 weft_code weft_material_add_models(weft_material *material, weft_error *error);
 
-/* Whose errors its levels have, where that is not all of it: "lobes beside the components" or "diffuse term beside the
- * components"; NULL without components. Pure. */
+/* Whether it has components, and nothing but zeros of lobes and diffuse terms. The errors of level 0 are then those of
+ * the components at the texels that they were learned from; other levels have none. Pure. */
+bool weft_material_has_components_alone(const weft_material *material);
+
+/* Whose errors its levels have, where that is not all of it: "components", "lobes beside the components" or "diffuse
+ * term beside the components"; NULL without components. Pure. */
 const char *weft_material_errors_of(const weft_material *material);
 
 /* Whether any texel has an opacity below 1 in any view. Pure. */

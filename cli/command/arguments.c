@@ -10,7 +10,7 @@
 
 const char *argp_program_version = "weft " WEFT_VERSION;
 
-enum { MAX_ROWS = 64, FIRST_KEY = 0x1000, COMMON_GROUP = 9 };
+enum { MAX_ROWS = 80, FIRST_KEY = 0x1000, FIRST_FORMER_KEY = 0x2000, COMMON_GROUP = 9 };
 
 static const weft_option common_table[] = {
     {"quiet", 'q', .help = "Print nothing but errors", .group = COMMON_GROUP, .kind = WEFT_OPTION_FLAG,
@@ -30,9 +30,9 @@ typedef struct arguments {
     struct {
         const weft_option *option;
         const weft_setting *setting; /* of the scene, or NULL */
-        bool is_given;
+        bool is_given, by_former_name;
     } row[MAX_ROWS];
-    struct argp_option option[MAX_ROWS + 8]; /* with headings and the end */
+    struct argp_option option[2 * MAX_ROWS + 8]; /* with former names, headings and the end */
 } arguments;
 
 static weft_scene_request *scene_of(const arguments *a)
@@ -47,6 +47,7 @@ static void add_heading(arguments *a, const char *title, int group)
     a->option[a->option_count++] = (struct argp_option){.doc = title, .group = group};
 }
 
+/* A removed option takes any value, so that what is said of it is said first. */
 static void add_row(arguments *a, const weft_option *option, const weft_setting *setting)
 {
     int row = a->row_count++;
@@ -54,15 +55,23 @@ static void add_row(arguments *a, const weft_option *option, const weft_setting 
         abort();
     a->row[row].option = option;
     a->row[row].setting = setting;
-    if (option->name)
-        a->option[a->option_count++] = (struct argp_option){
-            .name = option->name,
-            .key = option->letter ? option->letter : FIRST_KEY + row,
-            .arg = option->argument,
-            .flags = option->may_be_empty ? OPTION_ARG_OPTIONAL : 0,
-            .doc = option->help,
-            .group = option->group,
-        };
+    if (!option->name)
+        return;
+    struct argp_option own = {
+        .name = option->name,
+        .key = option->letter ? option->letter : FIRST_KEY + row,
+        .arg = option->gone ? "VALUE" : option->argument,
+        .flags = (option->may_be_empty || option->gone ? OPTION_ARG_OPTIONAL : 0) | (option->gone ? OPTION_HIDDEN : 0),
+        .doc = option->help,
+        .group = option->group,
+    };
+    a->option[a->option_count++] = own;
+    if (!option->former_name)
+        return;
+    own.name = option->former_name;
+    own.key = FIRST_FORMER_KEY + row;
+    own.flags |= OPTION_HIDDEN;
+    a->option[a->option_count++] = own;
 }
 
 static void add_option(void *context, const weft_option *option, const weft_setting *setting)
@@ -137,12 +146,48 @@ static error_t set_by_key(arguments *a, int key, const char *text, struct argp_s
 {
     for (int row = 0; row < a->row_count; row++) {
         const weft_option *option = a->row[row].option;
-        if (option->name && key == (option->letter ? option->letter : FIRST_KEY + row)) {
-            set(a, row, text, state);
-            return 0;
-        }
+        bool is_former = option->former_name && key == FIRST_FORMER_KEY + row;
+        if (!option->name || (key != (option->letter ? option->letter : FIRST_KEY + row) && !is_former))
+            continue;
+        if (option->gone)
+            argp_error(state, "--%s is gone since 0.2: %s", option->name, option->gone);
+        a->row[row].by_former_name |= is_former;
+        set(a, row, text, state);
+        return 0;
     }
     return ARGP_ERR_UNKNOWN;
+}
+
+/* The help of an option ends with its default, which stands in its row. The caller frees it. */
+static char *describe_default(int key, const char *text, void *input)
+{
+    const arguments *a = input;
+    int row = key - FIRST_KEY;
+    char *longer = NULL;
+    bool has_default = text && a && row >= 0 && row < a->row_count && a->row[row].option->usual;
+    if (!has_default || asprintf(&longer, "%s (default: %s)", text, a->row[row].option->usual) < 0)
+        return (char *)text;
+    return longer;
+}
+
+static void set_defaults(arguments *a)
+{
+    for (int row = 0; row < a->row_count; row++) {
+        const weft_option *option = a->row[row].option;
+        weft_error error = {0};
+        if (option->usual && !a->row[row].setting &&
+            weft_option_set(option, option->usual, a->values, &error) != WEFT_OK)
+            abort();
+    }
+}
+
+static void note_former_names(const arguments *a)
+{
+    for (int row = 0; row < a->row_count; row++) {
+        const weft_option *option = a->row[row].option;
+        if (a->row[row].by_former_name)
+            fprintf(stderr, "weft %s: --%s is now --%s\n", a->command->name, option->former_name, option->name);
+    }
 }
 
 /* ---- What they come to ---- */
@@ -254,9 +299,13 @@ void weft_arguments_parse(const weft_command *command, int argc, char **argv, vo
     arguments a = {.command = command, .values = values};
     const weft_common_options *common = values;
     add_rows(&a);
-    const struct argp parser = {a.option, parse_option, command->usage, command->documentation, NULL, NULL, NULL};
+    set_defaults(&a);
+    const struct argp parser = {a.option,         parse_option, command->usage, command->documentation, NULL,
+                                describe_default, NULL};
     argp_err_exit_status = WEFT_BAD_USAGE;
     argp_parse(&parser, argc, argv, 0, NULL, &a);
+    if (!common->quiet)
+        note_former_names(&a);
     if (common->threads > 0)
         omp_set_num_threads(common->threads);
 }

@@ -151,7 +151,7 @@ static void print_option(void *context, const weft_option *option, const weft_se
     const char *start = context;
     (void)setting;
     char name[80];
-    if (!option->name)
+    if (!option->name || option->gone)
         return;
     snprintf(name, sizeof name, "--%s", option->name);
     if (begins(name, start)) {

@@ -163,11 +163,8 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     weft_dataset *others;
     weft_compress_report report;
     weft_compress_options options = model->options;
-    options.levels = bench->has_pictures && !bench->for_pictures_alone && options.budget_bytes == 0;
+    options.levels = bench->has_pictures && !bench->for_pictures_alone;
     options.heights = false; /* those of the whole dataset are given afterwards */
-    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(bench->dataset), &fitted_excerpt(bench, model)->layout,
-                                        false, &model->options, &options.budget_bytes, error));
-    options.added_bytes = 0;
     WEFT_TRY(weft_excerpt_write(fitted_excerpt(bench, model), unseen, bench->scratch_path, &others, error));
     weft_code code = weft_compress(others, &options, NULL, &bench->material[split], &report, error);
     weft_dataset_close(others);

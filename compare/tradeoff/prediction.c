@@ -38,28 +38,6 @@ static weft_code complete_metadata(const predicting *work, weft_material *materi
     return weft_material_put_metadata(material, "predicted", weft_prediction_to_json(work->prediction), error);
 }
 
-weft_code weft_prediction_stored_bytes(const weft_prediction *prediction, uint64_t *bytes, weft_error *error)
-{
-    static const char name[] = ",\"predicted\":";
-    json_t *object = weft_prediction_to_json(prediction);
-    size_t size = object ? json_dumpb(object, NULL, 0, JSON_COMPACT) : 0;
-    json_decref(object);
-    *bytes = size + sizeof name;
-    return size > 0 ? WEFT_OK : weft_fail_memory(error, "metadata of the material", 0);
-}
-
-weft_code weft_prediction_added_bytes(weft_dataset *dataset, const weft_compress_options *options,
-                                      const weft_prediction *prediction, uint64_t *bytes, weft_error *error)
-{
-    weft_hold_out expected;
-    uint64_t own;
-    WEFT_TRY(weft_expected_record(dataset, options, &expected, error));
-    WEFT_TRY(weft_hold_out_bytes(&expected, bytes, error));
-    WEFT_TRY(weft_prediction_stored_bytes(prediction, &own, error));
-    *bytes += own;
-    return WEFT_OK;
-}
-
 /* ---- Some texels ---- */
 
 /* The weight of a material of some texels, and then how long its frame takes, both as of the whole. */
@@ -87,9 +65,6 @@ static weft_code fit(const predicting *work, weft_dataset *some, weft_weight *we
     weft_compress_options options = *work->options;
     weft_material material;
     options.heights = false; /* those of the whole are given afterwards */
-    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(work->dataset), weft_dataset_get_layout(some),
-                                        options.levels, work->options, &options.budget_bytes, error));
-    options.added_bytes = 0;
     WEFT_TRY(weft_compress(some, &options, NULL, &material, NULL, error));
     weft_code code = measure_costs(work, &material, weight, error);
     weft_material_free(&material);

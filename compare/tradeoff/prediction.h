@@ -10,7 +10,7 @@
 #include <jansson.h>
 
 typedef struct weft_prediction {
-    weft_preset preset; /* that chose the model; WEFT_PRESET_NONE where it was asked for */
+    weft_preset preset; /* that chose the model; WEFT_PRESET_NONE where a budget did */
     double least_fps;   /* of frames that were asked for; 0: any */
     char model[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
     double bytes;    /* of the file; 0: nothing is predicted */
@@ -21,22 +21,13 @@ typedef struct weft_prediction {
 /* Finds bytes and, where `timer` is not NULL, frame_ms; the other members are set. Fits the model to some texels with
  * all images: at most 64 x 64 in squares of 16 x 16 that lie spread over the dataset, fewer of more than 8192
  * images; of near images a block of neighbours, half a million samples at most or 32 x 32 texels. Weighs these with the
- * metadata that the file will have, as far as their length can be known. A budget is shared among the texels. Heights
+ * metadata that the file will have, as far as their length can be known. Heights
  * are those of the whole dataset, and are weighed as they are. Where nothing can be drawn frame_ms is 0 unless
  * least_fps is asked for. Writes to the folder of `scratch_path`; nothing is left there. Errors: those of
  * weft_compress, of reading, writing and drawing; WEFT_BAD_USAGE for a dataset of one image; WEFT_SYSTEM. */
 weft_code weft_prediction_find_costs(weft_dataset *dataset, const weft_compress_options *options,
                                      const char *scratch_path, weft_frame_timer *timer, weft_prediction *prediction,
                                      weft_error *error);
-
-/* Bytes of the metadata that are added to a material, about, before its error is measured: those of the measurement and
- * of the prediction. A budget has to leave them. Errors: WEFT_BAD_USAGE for a dataset of one image; those of reading;
- * WEFT_SYSTEM for memory. */
-weft_code weft_prediction_added_bytes(weft_dataset *dataset, const weft_compress_options *options,
-                                      const weft_prediction *prediction, uint64_t *bytes, weft_error *error);
-
-/* Of the prediction alone. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_prediction_stored_bytes(const weft_prediction *prediction, uint64_t *bytes, weft_error *error);
 
 /* As a JSON object (docs/reference/weft-format.md, "predicted"). The caller owns it; NULL where memory is short. */
 json_t *weft_prediction_to_json(const weft_prediction *prediction);

@@ -33,32 +33,9 @@ static weft_compress_options merge(const weft_compress_options *given, const wef
 {
     weft_compress_options merged = *given;
     merged.lobe_count = chosen->lobe_count;
-    merged.table = chosen->table;
     merged.component_count = chosen->component_count;
-    merged.rounded = chosen->rounded;
     merged.heights = chosen->heights;
     return merged;
-}
-
-/* What was asked for, as it is. */
-static weft_code list_given(choosing *work, weft_error *error)
-{
-    weft_priced_model *model = &work->model[work->count++];
-    const weft_compress_options *given = work->given;
-    *model = (weft_priced_model){.family = WEFT_PRICED_LOBES, .options = *given};
-    model->options.checkpoint_path = NULL;
-    if (given->target_error > 0)
-        snprintf(model->arguments, sizeof model->arguments, "--error %g", 100 * given->target_error);
-    else if (given->budget_bytes > 0)
-        snprintf(model->arguments, sizeof model->arguments, "--budget %g", 1e-6 * (double)given->budget_bytes);
-    snprintf(model->name, sizeof model->name, "%s",
-             model->arguments[0] ? "a model of each texel's own" : "the same model for all texels");
-    weft_prediction alike = {.error = 0.123456789};
-    memcpy(alike.model, model->name, sizeof alike.model);
-    memcpy(alike.arguments, model->arguments, sizeof alike.arguments);
-    return given->budget_bytes > 0
-               ? weft_prediction_added_bytes(work->dataset, given, &alike, &model->options.added_bytes, error)
-               : WEFT_OK;
 }
 
 static void list_models(choosing *work)
@@ -187,19 +164,10 @@ static weft_code open_timer(choosing *work, weft_error *error)
 static weft_code work_through(choosing *work, weft_compress_options *options, weft_prediction *prediction,
                               weft_error *error)
 {
-    bool chooses = work->wish->preset != WEFT_PRESET_NONE;
-    double frame_ms;
     WEFT_TRY(open_timer(work, error));
-    if (chooses)
-        list_models(work);
-    else
-        WEFT_TRY(list_given(work, error));
+    list_models(work);
     WEFT_TRY(measure(work, error));
-    if (chooses)
-        return choose(work, options, prediction, error);
-    WEFT_TRY(predict(work, 0, &frame_ms, error));
-    *prediction = work->prediction[0];
-    return WEFT_OK;
+    return choose(work, options, prediction, error);
 }
 
 weft_code weft_preset_predict(weft_dataset *dataset, const weft_preset_wish *wish, const char *scratch_path,

@@ -1,5 +1,4 @@
-/* What `weft compress` predicts before its work: of the model that a preset chooses for a dataset, or of the one that
- * was asked for. */
+/* What `weft compress` predicts before its work: of the model that a preset chooses for a dataset. */
 #ifndef WEFT_COMPARE_TRADEOFF_PRESET_H
 #define WEFT_COMPARE_TRADEOFF_PRESET_H
 
@@ -8,8 +7,8 @@
 
 /* What is wanted. */
 typedef struct weft_preset_wish {
-    weft_preset preset;  /* WEFT_PRESET_NONE: what the options ask for */
-    double least_fps;    /* of frames as compare/tradeoff/frame_timer.h draws them, here; with a preset; 0: any */
+    weft_preset preset;
+    double least_fps;    /* of frames as compare/tradeoff/frame_timer.h draws them, here; 0: any */
     bool times_frames;   /* says how long one takes, where it can be drawn; with least_fps in any case */
     int measured_splits; /* that are asked for afterwards; < 1: weft_hold_out_enough_splits */
 } weft_preset_wish;
@@ -19,7 +18,7 @@ typedef struct weft_preset_wish {
  * none of which the measurement afterwards takes, and finds for the one that is chosen how large its file will be and
  * how long a frame takes (weft_prediction_find_costs). One that is too slow is chosen no longer, and the preset chooses
  * among the others. *options gets lobes, components and whether through heights, and keeps all else.
- * Without a preset there is one model, that of the options, which stay as they are. Writes to the folder of
+ * Writes to the folder of
  * `scratch_path`; nothing is left there. The result does not depend on the number of
  * threads; with least_fps it depends on the machine. Errors: WEFT_BAD_USAGE for a dataset of one image, where all that
  * was held out is masked, or where no model is fast enough; where frames are to be fast also WEFT_SYSTEM where there is

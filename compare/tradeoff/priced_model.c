@@ -69,20 +69,17 @@ static void add_lobes(model_list *list)
 
 static weft_compress_options components_alone(const model_list *list, int components)
 {
-    weft_compress_options options = lobes_alone(0);
-    options.table = list->dataset->has_opacity;
+    weft_compress_options options = weft_compress_default_options();
     options.component_count = components;
-    options.rounded = true;
     options.heights = list->dataset->has_surface;
     return options;
 }
 
-static void add_components_seen(model_list *list, const weft_compress_options *options, const char *seen,
-                                const char *argument)
+static void add_components_seen(model_list *list, const weft_compress_options *options, const char *seen)
 {
     char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
     snprintf(name, sizeof name, "%d components%s", options->component_count, seen);
-    snprintf(arguments, sizeof arguments, "--components %d --rounding on%s", options->component_count, argument);
+    snprintf(arguments, sizeof arguments, "--components %d", options->component_count);
     add(list, WEFT_PRICED_COMPONENTS, options, 5, name, arguments);
 }
 
@@ -107,8 +104,8 @@ static void add_components(model_list *list)
         weft_compress_options options = components_alone(list, components), without = options;
         without.heights = false;
         if (list->dataset->has_surface)
-            add_components_seen(list, &without, ", without heights", " --heights off");
-        add_components_seen(list, &options, list->dataset->has_surface ? ", through heights" : "", "");
+            add_components_seen(list, &without, ", without heights");
+        add_components_seen(list, &options, list->dataset->has_surface ? ", through heights" : "");
     }
     add_kinds_of_maps(list, MAPS_COMPARED);
 }
@@ -165,7 +162,7 @@ static void add_photographs(model_list *list)
 
 weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset)
 {
-    return (weft_priced_dataset){weft_dataset_has_opacity(dataset), weft_dataset_has_surface(dataset), NULL};
+    return (weft_priced_dataset){weft_dataset_has_surface(dataset), NULL};
 }
 
 bool weft_priced_heights_are_kept(double without, double through)
@@ -202,11 +199,6 @@ bool weft_priced_model_is_fit(const weft_priced_model *model)
 bool weft_priced_model_is_of_lobes(const weft_priced_model *model)
 {
     return weft_priced_model_is_fit(model) && model->options.component_count == 0;
-}
-
-bool weft_priced_model_is_costly(const weft_priced_model *model)
-{
-    return weft_priced_model_is_of_lobes(model) && model->photographs != WEFT_PHOTOGRAPHS_ALL;
 }
 
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other)

@@ -37,7 +37,6 @@ typedef struct weft_priced_model {
 
 /* What else of a dataset decides which models it can carry. */
 typedef struct weft_priced_dataset {
-    bool has_opacity;  /* it lies in T, which components then have beside them */
     bool has_surface;  /* components and raw are offered with and without it (options.heights) */
     const char *cloth; /* file of a weave to be fitted, or of microcylinder cloth; NULL: none; not owned */
 } weft_priced_dataset;
@@ -62,9 +61,6 @@ bool weft_priced_model_is_fit(const weft_priced_model *model);
 
 /* Whether it is such a fit of each texel alone: of lobes and tables, not of components. Pure. */
 bool weft_priced_model_is_of_lobes(const weft_priced_model *model);
-
-/* Whether its fit takes long: lobes of fewer photographs. Pure. */
-bool weft_priced_model_is_costly(const weft_priced_model *model);
 
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);

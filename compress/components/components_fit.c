@@ -163,14 +163,18 @@ static weft_code project(fitting *work, weft_components_report *report, weft_err
     weft_component_maps_free(&work->maps);
     report->masked = work->projection.masked;
     report->empty_texels = work->projection.empty;
+    report->block_count = work->projection.block_count;
+    report->resumed_block_count = work->projection.resumed_block_count;
+    report->times = work->projection.times;
     if (code == WEFT_OK && work->options->finer)
         code = weft_component_model_double(&work->components, error);
     if (code == WEFT_OK)
         weft_components_fill_levels(&work->projection, work->components);
-    report->rounding_step =
-        rounding_step(&work->factorisation, report->scattered ? &work->completion.images : &work->images,
-                      work->components->component_count);
-    if (code == WEFT_OK && work->options->rounded && report->rounding_step > 0)
+    if (code == WEFT_OK && !work->options->finer)
+        report->rounding_step =
+            rounding_step(&work->factorisation, report->scattered ? &work->completion.images : &work->images,
+                          work->components->component_count);
+    if (report->rounding_step > 0)
         weft_components_round(report->rounding_step, work->components);
     return code;
 }
@@ -274,22 +278,12 @@ bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t 
     return layout->distance == WEFT_NEAR || views < LEAST_VIEWS || images < LEAST_LIGHTS * views;
 }
 
-weft_code weft_components_check(int component_count, weft_error *error)
-{
-    if (component_count < WEFT_COMPONENTS_GROUP || component_count > WEFT_COMPONENTS_MAX ||
-        component_count % WEFT_COMPONENTS_GROUP != 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "%d components: must be 4 to %d, a multiple of 4", component_count,
-                         WEFT_COMPONENTS_MAX);
-    return WEFT_OK;
-}
-
 weft_code weft_components_fit(weft_dataset *dataset, const weft_components_options *options,
                               const weft_progress *progress, weft_material *material, weft_components_report *report,
                               weft_error *error)
 {
     fitting work = {.dataset = dataset, .options = options, .progress = progress};
     *report = (weft_components_report){0};
-    WEFT_TRY(weft_components_check(options->component_count, error));
     weft_code code = fit(&work, material, report, error);
     if (code == WEFT_OK) {
         material->components = work.components;

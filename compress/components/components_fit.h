@@ -8,17 +8,17 @@
 #include "btf/material/material.h"
 #include "compress/kriging/covariance.h"
 #include "compress/options/options.h"
+#include "compress/run/block_reader.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
 
 #include <stdbool.h>
 
 typedef struct weft_components_options {
-    int component_count; /* 4 .. 64, a multiple of 4 */
+    int component_count; /* 4 .. 64, a multiple of 4; quantised where what they leave hides it, unless `finer` */
     weft_component_maps_choice maps;
     bool finer;              /* as many components again (compress/options/options.h) */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
-    bool rounded;            /* values and coefficients, where what is left hides it */
     bool for_screen;         /* dim images count for more (compress/options/options.h) */
     /* These change nothing in the result: */
     weft_memory_budget budget;
@@ -38,15 +38,13 @@ typedef struct weft_components_report {
     double left_out_error;      /* ... and their relative RMSE, each predicted by the others of them */
     weft_covariance mean;       /* of the mean texel, where it is of a mean */
     double mean_error[2];       /* of the mean texel, without this and with it */
-    double rounding_step; /* for weft_components_round: what that adds is hidden by what the components leave; 0 where
-                             none is */
+    double rounding_step;       /* of values and coefficients; 0: they are not rounded */
     int training_texels;
     long masked, empty_texels;
+    long block_count, resumed_block_count;
+    weft_block_reader_times times;
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
 } weft_components_report;
-
-/* That there can be so many components, before any work is done. Errors: WEFT_BAD_USAGE. */
-weft_code weft_components_check(int component_count, weft_error *error);
 
 /* Whether the images of a dataset that are not held out are scattered: fewer than 12 for a view, fewer than 4 views, or
  * near. Their components are learned from what kriging says of some texels (compress/kriging/kriging.h). Pure. */

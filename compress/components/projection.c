@@ -28,7 +28,7 @@ typedef struct run {
     const weft_factorisation *components;
     const weft_component_maps *maps;
     weft_projection *projection;
-    const weft_texel_block *block;
+    const weft_block_samples *block;
     int thread_count;
     worker *worker;
 } run;
@@ -61,7 +61,7 @@ static float brightest(const weft_component_images *images, const float *vector)
 
 static void gather(const run *r, const weft_component_images *seen, worker *own, long first, int count)
 {
-    const weft_texel_block *block = r->block;
+    const weft_block_samples *block = r->block;
     size_t images = (size_t)r->images->image_count, all = (size_t)r->images->dataset_image_count;
     for (size_t i = 0; i < (size_t)count; i++) {
         size_t at = (size_t)first + i, x = at % (size_t)block->place.width, y = at / (size_t)block->place.width;
@@ -106,7 +106,7 @@ static void project_batch(void *context, long item, int thread)
 {
     run *r = context;
     worker *own = &r->worker[thread];
-    const weft_texel_block *block = r->block;
+    const weft_block_samples *block = r->block;
     long texels = (long)block->place.width * block->place.height, first = item * BATCH;
     int count = texels - first < BATCH ? (int)(texels - first) : BATCH, components = r->components->count;
     float coefficient[BATCH * WEFT_COMPONENTS_MAX] = {0};
@@ -214,12 +214,15 @@ static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *p
     weft_thread_pool *pool = NULL;
     size_t first;
     WEFT_TRY(weft_kept_blocks_take(job->checkpoint, job->log, plan, r->projection, &first, error));
+    r->projection->block_count = (long)plan->count;
+    r->projection->resumed_block_count = (long)first;
     WEFT_TRY(weft_block_reader_create(dataset, plan->place + first, plan->count - first, block_texels, &reader, error));
     weft_code code = weft_thread_pool_create(r->thread_count, &pool, error);
     if (code == WEFT_OK)
         code = create_workers(r, weft_dataset_get_layout(dataset), error);
     if (code == WEFT_OK)
         code = project_blocks(r, reader, pool, plan, first, job, error);
+    r->projection->times = weft_block_reader_get_times(reader);
     free_workers(r);
     weft_thread_pool_free(pool);
     weft_block_reader_free(reader);

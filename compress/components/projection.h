@@ -4,6 +4,7 @@
 
 #include "base/progress.h"
 #include "compress/components/factorisation.h"
+#include "compress/run/block_reader.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
 
@@ -15,6 +16,8 @@ typedef struct weft_projection {
     float *floor;       /* [height][width][3] weft_floor_of_texel */
     long masked;        /* samples */
     long empty;         /* texels without any */
+    long block_count, resumed_block_count; /* resumed: taken from the checkpoint */
+    weft_block_reader_times times;
 } weft_projection;
 
 /* How to go about it; no part of it changes a bit of the result. */

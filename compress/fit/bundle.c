@@ -152,87 +152,6 @@ static void place_images(weft_bundle *bundle, entry *entries, const int *images)
     }
 }
 
-/* ---- Distinct lights ---- */
-
-static int compare_entry_lights(const void *left, const void *right)
-{
-    entry a = *(const entry *)left, b = *(const entry *)right;
-    a.view = b.view = 0;
-    return compare_lights(&a, &b);
-}
-
-static bool same_light(weft_vec3 a, weft_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-/* A light that few images have, because a rig moved it aside for them, takes the label of the nearest common one. Fills
- * merged [labels]; `distinct` then holds the common lights alone. Returns their number. */
-static int merge_rare_lights(weft_vec3 *distinct, const int *uses, int labels, int *merged)
-{
-    int most = 0, common = 0;
-    for (int i = 0; i < labels; i++)
-        most = uses[i] > most ? uses[i] : most;
-    for (int i = 0; i < labels; i++)
-        merged[i] = 4 * uses[i] >= most ? common++ : -1;
-    for (int i = 0; i < labels; i++) {
-        double nearest = -2;
-        for (int j = 0, label = 0; merged[i] < 0 && j < labels; j++) {
-            if (4 * uses[j] < most)
-                continue;
-            double cosine = weft_dot(distinct[i], distinct[j]);
-            if (cosine > nearest) {
-                nearest = cosine;
-                merged[i] = -2 - label;
-            }
-            label++;
-        }
-    }
-    for (int i = 0, label = 0; i < labels; i++) {
-        if (merged[i] >= 0)
-            distinct[label++] = distinct[i];
-        else
-            merged[i] = -2 - merged[i];
-    }
-    return common;
-}
-
-/* Labels by image, from entries sorted by light; returns the number of distinct lights. */
-static int label_images(const entry *entries, int count, weft_vec3 *distinct, int *uses, int *label)
-{
-    int labels = 0;
-    for (int i = 0; i < count; i++) {
-        if (labels == 0 || !same_light(entries[i].light, distinct[labels - 1]))
-            distinct[labels++] = entries[i].light;
-        label[entries[i].image] = labels - 1;
-        uses[labels - 1]++;
-    }
-    return labels;
-}
-
-/* Where fewer than four images share a light on average there is nothing to learn about one. */
-static weft_code label_lights(weft_bundle *bundle, const weft_dataset_layout *layout, entry *entries, weft_error *error)
-{
-    if (layout->distance == WEFT_NEAR || bundle->image_count == 0)
-        return WEFT_OK;
-    size_t images = (size_t)layout->image_count;
-    int *label = calloc(3 * images, sizeof *label), *uses = label + images, *merged = uses + images;
-    bundle->distinct = calloc(images, sizeof *bundle->distinct);
-    bundle->light_of = calloc((size_t)bundle->sample_count, sizeof *bundle->light_of);
-    if (!label || !bundle->distinct || !bundle->light_of) {
-        free(label);
-        return weft_fail_memory(error, "labels of lights", 3 * images * sizeof *label);
-    }
-    qsort(entries, (size_t)bundle->image_count, sizeof *entries, compare_entry_lights);
-    int labels = label_images(entries, bundle->image_count, bundle->distinct, uses, label);
-    int common = merge_rare_lights(bundle->distinct, uses, labels, merged);
-    for (int i = 0; i < bundle->sample_count; i++)
-        bundle->light_of[i] = bundle->image[i] < 0 ? 0 : merged[label[bundle->image[i]]];
-    bundle->light_count = 4 * common <= bundle->image_count ? common : 0;
-    free(label);
-    return WEFT_OK;
-}
-
 /* ---- Creation ---- */
 
 /* Zeros, four bytes each. */
@@ -267,7 +186,6 @@ static weft_code fill_bundle(weft_bundle *bundle, const weft_dataset_layout *lay
     WEFT_TRY(allocate_samples(bundle, error));
     place_images(bundle, entries, images);
     weigh_images(bundle, layout);
-    WEFT_TRY(label_lights(bundle, layout, entries, error));
     weft_bundle_aim(bundle, layout, 0, 0);
     return WEFT_OK;
 }
@@ -300,8 +218,6 @@ void weft_bundle_free(weft_bundle *bundle)
     free(bundle->view_of);
     free(bundle->weight);
     free(bundle->view);
-    free(bundle->distinct);
-    free(bundle->light_of);
     for (int k = 0; k < 3; k++) {
         free(bundle->light[k]);
         free(bundle->view_xyz[k]);

@@ -30,17 +30,14 @@ typedef struct weft_bundle {
     int view_stride; /* view_count rounded up to whole strips: the length of what is kept for every view */
     int sample_count;
     int strip_count;
-    bool is_coarse;      /* some strip has fewer coarse slots than slots */
-    weft_strip *strip;   /* [strip_count] */
-    int32_t *image;      /* [sample_count] the image whose sample stands here, -1 in the padding */
-    int32_t *view_of;    /* [sample_count] */
-    float *weight;       /* [sample_count] of the image, 1 in the mean over the bundled images */
-    weft_vec3 *view;     /* [view_count] unit, in the frame of the surface */
-    float *view_xyz[3];  /* [view_stride] the same; 0 in the padding */
-    float *light[3];     /* [sample_count] unit, in the frame of the surface; 0 in the padding */
-    int light_count;     /* distinct lights; 0 where few repeat or directions differ from texel to texel */
-    weft_vec3 *distinct; /* [light_count] */
-    int32_t *light_of;   /* [sample_count] index into distinct, 0 in the padding; NULL without */
+    bool is_coarse;     /* some strip has fewer coarse slots than slots */
+    weft_strip *strip;  /* [strip_count] */
+    int32_t *image;     /* [sample_count] the image whose sample stands here, -1 in the padding */
+    int32_t *view_of;   /* [sample_count] */
+    float *weight;      /* [sample_count] of the image, 1 in the mean over the bundled images */
+    weft_vec3 *view;    /* [view_count] unit, in the frame of the surface */
+    float *view_xyz[3]; /* [view_stride] the same; 0 in the padding */
+    float *light[3];    /* [sample_count] unit, in the frame of the surface; 0 in the padding */
 } weft_bundle;
 
 /* Bundles the images of a layout; those with held_out[image] != 0 are left out (held_out may be NULL). Directions are

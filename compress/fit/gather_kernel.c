@@ -117,29 +117,6 @@ void WEFT_KERNEL(weft_gather_compare)(const weft_bundle *bundle, const weft_samp
     sums->count += samples->valid_count;
 }
 
-void WEFT_KERNEL(weft_gather_compare_flat)(const weft_bundle *bundle, const weft_samples *samples,
-                                           const float diffuse[WEFT_CHANNELS], weft_error_sums *sums)
-{
-    double square[WEFT_CHANNELS] = {0}, square_error[WEFT_CHANNELS] = {0};
-    for (int at = 0; at < bundle->sample_count; at += LANES) {
-        lanes cosine = lanes_load(samples->cosine + at);
-        lane_bits valid = cosine > 0.0f;
-        lanes root = lanes_where(valid, lanes_load(bundle->light[2] + at) / lanes_select(valid, cosine, lanes_of(1)));
-        for (int k = 0; k < WEFT_CHANNELS; k++) {
-            lanes sample = lanes_load(samples->value[k] + at), error = (sample - cosine * diffuse[k]) * root;
-            sample *= root;
-            square[k] += (double)lanes_sum(sample * sample);
-            square_error[k] += (double)lanes_sum(error * error);
-        }
-    }
-    double scale = samples->scale * samples->scale;
-    for (int k = 0; k < WEFT_CHANNELS; k++) {
-        sums->square += scale * square[k];
-        sums->square_error += scale * square_error[k];
-        sums->count += samples->valid_count;
-    }
-}
-
 WEFT_INLINE float largest_of(lanes x)
 {
     float largest = x[0];

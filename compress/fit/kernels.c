@@ -3,11 +3,9 @@
 #define TABLE(set)                                                                                                     \
     WEFT_DECLARE_FIT_KERNELS(set);                                                                                     \
     static const weft_fit_kernels kernels_##set = {                                                                    \
-        weft_gram_accumulate_##set, weft_gather_samples_##set,      weft_gather_weigh_##set,                           \
-        weft_gather_compare_##set,  weft_gather_compare_flat_##set, weft_gather_brightest_##set,                       \
-        weft_gram_evaluate_##set,   weft_screen_load_##set,         weft_screen_try_##set,                             \
-        weft_linear_digest_##set,   weft_linear_residual_##set,     weft_linear_normal_##set,                          \
-        weft_fit_normal_##set,      weft_light_separate_##set}
+        weft_gram_accumulate_##set,  weft_gather_samples_##set,  weft_gather_weigh_##set,  weft_gather_compare_##set,  \
+        weft_gather_brightest_##set, weft_gram_evaluate_##set,   weft_screen_load_##set,   weft_screen_try_##set,      \
+        weft_linear_digest_##set,    weft_linear_residual_##set, weft_linear_normal_##set, weft_fit_normal_##set}
 
 TABLE(baseline);
 #if defined(__x86_64__)

@@ -6,14 +6,6 @@
 #include "compress/fit/error_tally.h"
 #include "compress/fit/normal.h"
 
-/* Sums over the samples of a view and a light, [light_count][view_stride], of a model f without T and S: <f|f> and
- * <f|r>. 0 in the padding. */
-typedef struct weft_separable {
-    int light_count, view_stride;
-    float *square, *product;
-    float prior; /* S = 1 counts as much as this part of the mean <T f|T f> of a light */
-} weft_separable;
-
 /* What compress/fit/screen.h tries lobes with: arrays [sample_count], of which the samples of a part are filled, and
  * <f|f> by view. */
 enum { WEFT_SCREEN_EXPONENTS = 7 /* 1, 4, 16, ... 4096 */ };
@@ -43,9 +35,6 @@ struct weft_fit_kernels {
      * table [view_stride] leaves of them. */
     void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
                     const float *table, weft_error_sums *sums);
-    /* The same of all channels, where the model is but a diffuse term and T is 1. */
-    void (*compare_flat)(const weft_bundle *bundle, const weft_samples *samples, const float diffuse[WEFT_CHANNELS],
-                         weft_error_sums *sums);
     /* The largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples that count. */
     void (*brightest)(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r, float *f,
                       float *cosine);
@@ -69,9 +58,6 @@ struct weft_fit_kernels {
     /* See weft_normal_of_trial; without the curvature of the scale, which it returns. */
     double (*normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
                      weft_normal *normal);
-    /* T(v) = <S f|r>_v / <S f|S f>_v, if wanted, then S(l) alike with its prior, `rounds` times from S = light; 1 where
-     * the model leaves nothing. table [view_stride], light [light_count]; energy [light_count]: <T f|T f>. */
-    void (*separate)(const weft_separable *own, bool with_table, int rounds, float *table, float *light, float *energy);
 };
 
 /* The functions of one set, by their names in it. */
@@ -83,8 +69,6 @@ struct weft_fit_kernels {
     void weft_gather_weigh_##set(const weft_bundle *bundle, weft_samples *samples);                                    \
     void weft_gather_compare_##set(const weft_bundle *bundle, const weft_samples *samples, int channel,                \
                                    const float *model, const float *table, weft_error_sums *sums);                     \
-    void weft_gather_compare_flat_##set(const weft_bundle *bundle, const weft_samples *samples,                        \
-                                        const float diffuse[WEFT_CHANNELS], weft_error_sums *sums);                    \
     void weft_gather_brightest_##set(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r,    \
                                      float *f, float *cosine);                                                         \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
@@ -99,9 +83,7 @@ struct weft_fit_kernels {
     double weft_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,               \
                                     const weft_linear *linear, double *h, double *g);                                  \
     double weft_fit_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,     \
-                                 weft_normal *normal);                                                                 \
-    void weft_light_separate_##set(const weft_separable *own, bool with_table, int rounds, float *table, float *light, \
-                                   float *energy)
+                                 weft_normal *normal)
 #define WEFT_DECLARE_FIT_KERNELS(set) WEFT_DECLARE_FIT_KERNELS_OF(set)
 
 /* Those of an instruction set of this processor. */

@@ -308,15 +308,12 @@ static void describe(const weft_dataset_layout *layout, measuring *work)
 }
 
 /* Of the texels that were read. */
-static weft_code measure_texels(const weft_dataset *dataset, measuring *work, const weft_progress *progress,
-                                weft_error *error)
+static weft_code measure_texels(measuring *work, const weft_progress *progress, weft_error *error)
 {
     static const char step[] = "fitting without some images";
     const weft_excerpt *fitted = weft_measured_texels_fitted(&work->texels);
     if (weft_excerpt_is_masked(fitted))
         return weft_fail(error, WEFT_BAD_USAGE, "every sample of the texels that were tried is masked");
-    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(dataset), &fitted->layout, false, work->given,
-                                        &work->options.budget_bytes, error));
     for (int s = 0; s < work->measured_count; s++) {
         weft_progress_report(progress, step, s, work->measured_count);
         WEFT_TRY(measure_split(work, s, error));
@@ -333,13 +330,13 @@ static weft_code measure_spread_texels(weft_dataset *dataset, measuring *work, c
     work->last_level = 0;
     WEFT_TRY(weft_measured_texels_read_spread(dataset, &work->options, &work->texels, error));
     describe(weft_dataset_get_layout(dataset), work);
-    WEFT_TRY(measure_texels(dataset, work, progress, error));
+    WEFT_TRY(measure_texels(work, progress, error));
     weft_measured_texels_free(&work->texels);
     work->takes_errors = false;
     work->first_level = 1;
     work->last_level = WEFT_RESIDUAL_LEVELS - 1;
     WEFT_TRY(weft_measured_texels_read_levels(dataset, &work->options, &work->texels, error));
-    return measure_texels(dataset, work, progress, error);
+    return measure_texels(work, progress, error);
 }
 
 /* All levels are of the same texels. */
@@ -351,13 +348,12 @@ static weft_code measure_neighbours(weft_dataset *dataset, measuring *work, cons
     WEFT_TRY(weft_measured_texels_read(dataset, &work->options, &work->splits, &work->texels, error));
     describe(weft_dataset_get_layout(dataset), work);
     work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->texels.excerpt);
-    return measure_texels(dataset, work, progress, error);
+    return measure_texels(work, progress, error);
 }
 
 static weft_code measure_splits(weft_dataset *dataset, measuring *work, const weft_progress *progress,
                                 weft_error *error)
 {
-    work->options.added_bytes = 0;
     work->whole_model = weft_compress_plan(weft_dataset_get_layout(dataset), &work->options, &work->whole_lobes);
     if (weft_measures_spread_texels(dataset, &work->options, &work->splits))
         WEFT_TRY(measure_spread_texels(dataset, work, progress, error));

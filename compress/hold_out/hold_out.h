@@ -12,7 +12,7 @@
 
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
- * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material.
+ * held-out images of `options` and checkpoint.
  * Which texels are measured says compress/hold_out/measured_texels.h: at most 16 x 16 single ones (24 x 24 with
  * components), and for the coarser levels of the certificate 8 x 8 of each of levels 1 to 3, all of them spread; small
  * squares where options->memory_bytes is a limit; 64 x 64 neighbours where the fit borrows from them or the dataset has

@@ -13,7 +13,7 @@ struct weft_block_reader {
     weft_dataset *dataset;
     const weft_block_place *place;
     size_t count;
-    weft_texel_block slot[SLOTS]; /* block i lies in slot i % SLOTS */
+    weft_block_samples slot[SLOTS]; /* block i lies in slot i % SLOTS */
     pthread_t thread;
     bool is_running;
     /* Below: under the mutex. */
@@ -50,7 +50,7 @@ static bool wait_for_a_free_slot(weft_block_reader *reader)
 
 static bool read_into(weft_block_reader *reader, size_t index)
 {
-    weft_texel_block *block = &reader->slot[index % SLOTS];
+    weft_block_samples *block = &reader->slot[index % SLOTS];
     block->place = reader->place[index];
     const weft_block_place *place = &block->place;
     double began = weft_now_s();
@@ -112,7 +112,7 @@ weft_code weft_block_reader_create(weft_dataset *dataset, const weft_block_place
     return code;
 }
 
-weft_code weft_block_reader_next(weft_block_reader *reader, const weft_texel_block **block, weft_error *error)
+weft_code weft_block_reader_next(weft_block_reader *reader, const weft_block_samples **block, weft_error *error)
 {
     if (reader->taken == reader->count)
         return weft_fail(error, WEFT_BAD_USAGE, "all %zu blocks have been read", reader->count);

@@ -9,11 +9,11 @@ typedef struct weft_block_place {
     int x, y, width, height; /* texels */
 } weft_block_place;
 
-typedef struct weft_texel_block {
+typedef struct weft_block_samples {
     weft_block_place place;
     weft_half *samples; /* [height][width][image_count][3] */
     uint8_t *mask;      /* [height][width][image_count] */
-} weft_texel_block;
+} weft_block_samples;
 
 typedef struct weft_block_reader weft_block_reader;
 
@@ -33,7 +33,7 @@ weft_code weft_block_reader_create(weft_dataset *dataset, const weft_block_place
 
 /* Gives back the block before, if any, and waits for the next one, which stays the reader's. Errors: those of
  * weft_dataset_read_block; WEFT_BAD_USAGE after the last block. */
-weft_code weft_block_reader_next(weft_block_reader *reader, const weft_texel_block **block, weft_error *error);
+weft_code weft_block_reader_next(weft_block_reader *reader, const weft_block_samples **block, weft_error *error);
 
 /* So far. Call it between weft_block_reader_next and the end of the last block. */
 weft_block_reader_times weft_block_reader_get_times(weft_block_reader *reader);

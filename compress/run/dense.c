@@ -46,7 +46,7 @@ typedef struct run {
 /* The texels of a block, level after level. */
 typedef struct work_list {
     run *fit;
-    const weft_texel_block *block;
+    const weft_block_samples *block;
     struct {
         long first; /* number of the level's first texel */
         weft_block_place place;
@@ -55,7 +55,7 @@ typedef struct work_list {
     long count;
 } work_list;
 
-static work_list list_work(run *fit, const weft_texel_block *block, int finished)
+static work_list list_work(run *fit, const weft_block_samples *block, int finished)
 {
     work_list list = {.fit = fit, .block = block, .range_count = finished + 1};
     for (int k = 0; k <= finished; k++) {
@@ -75,7 +75,7 @@ static void hand_over_tally(run *fit, worker *who)
 }
 
 /* The group of a texel: of level 0 from its samples, else from the pyramid. */
-static const float *find_group(run *fit, const weft_texel_block *block, int level, int x, int y, int thread)
+static const float *find_group(run *fit, const weft_block_samples *block, int level, int x, int y, int thread)
 {
     if (level > 0)
         return weft_pyramid_group(&fit->pyramid, &block->place, level, x, y);
@@ -87,7 +87,7 @@ static const float *find_group(run *fit, const weft_texel_block *block, int leve
     return group;
 }
 
-static void fit_texel(run *fit, const weft_texel_block *block, int level, int x, int y, int thread)
+static void fit_texel(run *fit, const weft_block_samples *block, int level, int x, int y, int thread)
 {
     worker *who = &fit->worker[thread];
     weft_material *material = fit->fitted.material;
@@ -114,7 +114,7 @@ static void fit_item(void *context, long item, int thread)
               thread);
 }
 
-static void fit_texels(run *fit, const weft_texel_block *block, int finished)
+static void fit_texels(run *fit, const weft_block_samples *block, int finished)
 {
     work_list list = list_work(fit, block, finished);
     weft_thread_pool_run(fit->pool, fit_item, &list, list.count);
@@ -207,7 +207,7 @@ static size_t block_texels(const weft_dataset_layout *layout, int side_level)
 static uint64_t packed_bytes(const weft_material *material)
 {
     return sizeof(int16_t) * 3 + sizeof(weft_half) * 4 * (1 + 3 * (uint64_t)material->lobe_count) +
-           4 * ((uint64_t)material->view_count + (uint64_t)material->light_count) + material->has_models;
+           4 * (uint64_t)material->view_count;
 }
 
 static long all_texels(const weft_material *material)
@@ -299,7 +299,7 @@ static void free_run(run *fit)
 
 static weft_code fit_block(run *fit, size_t index, weft_error *error)
 {
-    const weft_texel_block *block;
+    const weft_block_samples *block;
     int finished = fit->plan.finished[index];
     WEFT_TRY(weft_block_reader_next(fit->reader, &block, error));
     weft_pyramid_sum_block(&fit->pyramid, fit->pool, block);

@@ -46,10 +46,6 @@ static void transfer_texel(weft_fitted *fitted, int k, size_t texel, weft_record
         weft_record_transfer(record, level->lobe + 4 * (i * texels + texel), 4 * sizeof *level->lobe);
     for (size_t view = 0; level->table && view < (size_t)material->view_count; view++)
         weft_record_transfer(record, level->table + 4 * (view * texels + texel), 4);
-    for (size_t light = 0; light < (size_t)material->light_count; light++)
-        weft_record_transfer(record, level->light_table + 4 * (light * texels + texel), 4);
-    if (level->model)
-        weft_record_transfer(record, level->model + texel, 1);
     weft_record_transfer(record, &fitted->sums[k][texel], sizeof fitted->sums[k][texel]);
 }
 
@@ -100,9 +96,6 @@ void weft_fitted_add_counts(weft_texel_counts *to, const weft_texel_counts *from
     to->empty += from->empty;
     to->turned += from->turned;
     to->second_start += from->second_start;
-    to->missed += from->missed;
-    to->held += from->held;
-    to->stepped_down += from->stepped_down;
 }
 
 void weft_fitted_end_block(weft_fitted *fitted)

@@ -59,7 +59,7 @@ weft_block_place weft_block_place_at(const weft_block_place *block, int level)
 
 /* ---- Inside a block ---- */
 
-static void add_texel(const weft_pyramid *pyramid, const weft_texel_block *block, int x, int y, int thread,
+static void add_texel(const weft_pyramid *pyramid, const weft_block_samples *block, int x, int y, int thread,
                       float *group)
 {
     size_t images = pyramid->image_count;
@@ -72,7 +72,7 @@ static void add_texel(const weft_pyramid *pyramid, const weft_texel_block *block
 /* The groups of one level of a block. */
 typedef struct level_sums {
     const weft_pyramid *pyramid;
-    const weft_texel_block *block;
+    const weft_block_samples *block;
     int level;
     weft_block_place own, below; /* the block at this level and the one below */
 } level_sums;
@@ -97,7 +97,7 @@ static void sum_group(void *context, long item, int thread)
     }
 }
 
-void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_thread_pool *pool, const weft_texel_block *block)
+void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_thread_pool *pool, const weft_block_samples *block)
 {
     const weft_block_plan *plan = pyramid->plan;
     if (plan->last_level == 0)

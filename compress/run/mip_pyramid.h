@@ -28,7 +28,7 @@ void weft_pyramid_free(weft_pyramid *pyramid);
 weft_block_place weft_block_place_at(const weft_block_place *block, int level);
 
 /* Sums the groups of a block from its samples. `pool` has at most thread_count threads. */
-void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_thread_pool *pool, const weft_texel_block *block);
+void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_thread_pool *pool, const weft_block_samples *block);
 
 /* The sums of the whole block, which weft_pyramid_sum_block has filled in, or the caller. NULL for a material without
  * levels. */

@@ -50,29 +50,22 @@ static void measure_texel(const weft_sparse_field *field, size_t texel, int chan
     }
 }
 
-/* Lobe and diffuse term are largest where both directions mirror each other about the normal: their sum is held to
- * WEFT_BRIGHTEST_MULTIPLE times the brightest sample. Of r there is no other bound than that of f. */
-static bool hold(const weft_sparse_field *field, size_t texel, int channel, weft_fit *fit)
+/* See compress/texel/texel.h. */
+static double ceiling_of(const weft_sparse_field *field, size_t texel)
 {
     size_t images = (size_t)field->image_count;
-    double brightest = 0, highest = 0, f = 0;
+    double r = 0, f = 0, highest = 0;
     for (size_t i = texel * images; i < (texel + 1) * images; i++) {
-        double cosine = (double)field->light[3 * i + 2], value = (double)field->value[3 * i + (size_t)channel];
+        const float *value = field->value + 3 * i;
+        double cosine = (double)field->light[3 * i + 2];
+        double brightest = fmax((double)value[0], fmax((double)value[1], (double)value[2]));
         if (!(field->weight[i] > 0 && cosine > 0))
             continue;
-        brightest = fmax(brightest, value);
+        r = fmax(r, brightest);
+        f = fmax(f, brightest / cosine);
         highest = fmax(highest, cosine);
-        f = fmax(f, value / cosine);
     }
-    double amplitude = fit->lobe_count > 0 ? fit->lobe[0].amplitude : 0, sum = fit->diffuse + amplitude;
-    double most = WEFT_BRIGHTEST_MULTIPLE * fmin(f, highest > 0 ? brightest / highest : 0);
-    if (!(sum > most))
-        return false;
-    double left = fmin(fit->diffuse, most);
-    fit->diffuse = left;
-    if (fit->lobe_count > 0)
-        fit->lobe[0].amplitude = most - left;
-    return true;
+    return weft_texel_ceiling(r, f, highest);
 }
 
 static bool has_samples(const weft_sparse_field *field, size_t texel)
@@ -91,18 +84,16 @@ static void store_texel(const weft_sparse_field *field, const weft_sparse_texel 
     int x = (int)(texel % (size_t)field->width), y = (int)(texel / (size_t)field->width);
     weft_frame frame = fit_of_texel(from, 0, 0).frame;
     frame = weft_pack_frame(&frame, material->level[level].frame + 3 * texel);
-    bool held = false;
     for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
         weft_fit fit = fit_of_texel(from, material->lobe_count, channel);
         weft_packed packed;
-        held = hold(field, texel, channel, &fit) || held;
         weft_pack_rounded(&fit, 1, &packed);
-        weft_texel_store(material, level, x, y, channel, &packed, NULL, NULL);
+        weft_texel_store(material, level, x, y, channel, &packed, NULL);
         fit = weft_unpack(&packed, material->lobe_count, &frame, 1);
         measure_texel(field, texel, channel, &fit, tally, &counts->sums);
     }
+    weft_material_set_ceiling(&material->level[level], texel, (float)ceiling_of(field, texel));
     counts->texels++;
-    counts->held += held;
     counts->empty += !has_samples(field, texel);
     counts->turned += from->slope_x != 0 || from->slope_y != 0;
 }
@@ -125,7 +116,6 @@ static weft_code fit_level(const weft_sparse_field *field, const weft_sparse_set
         counts->texels += own.texels;
         counts->empty += own.empty;
         counts->turned += own.turned;
-        counts->held += own.held;
     }
     weft_error_tally_free(tally);
     free(fitted);

@@ -3,8 +3,7 @@
 #define WEFT_COMPRESS_TEXEL_TEXEL_H
 
 #include "compress/fit/error_tally.h"
-#include "compress/texel/candidate.h"
-#include "compress/texel/frame_search.h"
+#include "compress/options/options.h"
 #include "compress/texel/pack.h"
 
 /* What a thread needs for that. Texels are fitted independently: starting from the left neighbour saved a tenth of the
@@ -16,23 +15,13 @@ typedef struct weft_texel_source {
     const weft_dataset_layout *layout;
     const uint8_t *held_out;
     weft_fit_options options;
-    bool light_table; /* fit S(l), where lights have labels */
     weft_sample_weights weights;
-    weft_frame_choice frames;
-    const weft_material
-        *given; /* WEFT_FRAMES_GIVEN: has the frames; WEFT_FRAMES_FITTED: begin there too, may be NULL */
-    /* Each texel has the smallest model (compress/texel/model_ladder.h) whose RMSE over the rms of its samples is at
-     * most this; the whole of `options` where none is. 0: the whole everywhere. */
-    double target_error;
-    const weft_judgement *judgement; /* not NULL: nothing is fitted and stored, these candidates are measured */
+    const weft_material *given; /* has frames from which the search of frames begins, too; NULL: there are none */
 } weft_texel_source;
 
 /* What happened to some texels. */
 typedef struct weft_texel_counts {
     long texels, empty, turned, second_start;
-    long missed;       /* texels that no model brings to the target */
-    long held;         /* texels that were held to WEFT_BRIGHTEST_MULTIPLE */
-    long stepped_down; /* texels that a smaller model serves better */
     weft_error_sums sums;
 } weft_texel_counts;
 
@@ -49,11 +38,21 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
                     const float *count, weft_texel_counts *counts);
 
 /* Number of texels of level 0 in the group of texel (x, y) of a level: 4^level inside, fewer at the right and lower
- * border. Its extent goes to x0..y1. Pure. */
+ * border. Its extent goes to x0, y0, x1, y1. Pure. */
 int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y, int extent[4]);
 
-/* Stores one packed channel: T `code` [view_count] and S `light_code` [light_count], NULL where there is none. */
+/* The ceiling of a texel whose brightest sample, cosine included, is r, whose brightest sample without it is f, and
+ * whose highest light has that cosine; 0 for a texel without light. Pure.
+ *
+ * A lobe may be far brighter between its samples, or beyond them, than any of them. The ceiling c bounds f, and with it
+ * r = f cos <= c, by what the samples allow: WEFT_BRIGHTEST_MULTIPLE times the brightest r, as it would be under the
+ * highest light. To multiply the brightest f would not do: a sample at grazing light has a large f and next to no r,
+ * and noise more so, and several times that f would glare under a light from above. No sample is cut: where the
+ * brightest f is above that bound it is the ceiling. */
+double weft_texel_ceiling(double r, double f, double cosine);
+
+/* Stores one packed channel: T `code` [view_count], NULL where there is none. */
 void weft_texel_store(weft_material *material, int level, int x, int y, int channel, const weft_packed *packed,
-                      const uint8_t *code, const uint8_t *light_code);
+                      const uint8_t *code);
 
 #endif

@@ -40,9 +40,7 @@ static void measure_views(weft_texel_fitter *fitter, int channel)
     const weft_bundle *bundle = &fitter->bundle;
     weft_samples all = fitter->samples;
     all.cosine = bundle->light[2];
-    if (fitter->light_count > 0)
-        all = weft_light_apply(bundle, &all, fitter->decoded_light, fitter->lights.cosine);
-    const float *model = weft_fit_evaluate(bundle, &all, fitter->workspace, &fitter->now.as_read[channel]);
+    const float *model = weft_fit_evaluate(bundle, &all, fitter->workspace, &fitter->as_read[channel]);
     double *energy = fitter->table, *count = energy + bundle->view_count;
     memset(energy, 0, 2 * (size_t)bundle->view_count * sizeof *energy);
     for (int i = 0; i < bundle->sample_count; i++) {
@@ -58,7 +56,7 @@ static void measure_views(weft_texel_fitter *fitter, int channel)
 void weft_texel_limit_unseen(weft_texel_fitter *fitter, int channel)
 {
     const weft_bundle *bundle = &fitter->bundle;
-    uint8_t *code = fitter->now.code + (size_t)channel * (size_t)bundle->view_count;
+    uint8_t *code = fitter->code + (size_t)channel * (size_t)bundle->view_count;
     if (fitter->samples.valid_count == bundle->image_count || !count_samples(fitter))
         return;
     measure_views(fitter, channel);

@@ -166,7 +166,7 @@ static const weft_setting schema[] = {
         "model.components",
         OPTION("components", "N", EVALUATION,
                "Only the first N components of the material, in steps of 4; 0: its lobes (default: all components)"),
-        WHOLE(scene.components, 0, WEFT_COMPONENTS_MAX)),
+        .former_name = "layers", WHOLE(scene.components, 0, WEFT_COMPONENTS_MAX)),
     ARRAY(WEFT_SCENE_MAX_LOBES, "model.lobes",
           OPTION("lobes-on", "N[,N...]|none", EVALUATION, "Only these lobes of the material, counted from 1"),
           SWITCH(scene.lobe), .read = weft_choose_lobes),

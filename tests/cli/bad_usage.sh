@@ -126,7 +126,7 @@ expect_one_line 3 "folder 'absent'" photographs good -o absent/out.btf.h5
 expect_one_line 3 "'good.weft' is a file" compare good.btf.h5 good.weft -o good.weft/report
 expect_one_line 3 "'good.weft' is a file" capture --sample "$weave" --plan plan.csv -o good.weft
 expect_one_line 3 "'good.weft' is a file" synthetic checker -o good.weft/new
-for command in "register good" "photographs good" "compress good.btf.h5 --error 20"; do
+for command in "register good" "photographs good"; do
     # shellcheck disable=SC2086
     expect_one_line 3 "'good.weft' is a file" $command -o out --report good.weft
     expect_no_file out

@@ -84,18 +84,18 @@ expect_setting wide.png mesh drape
 expect_setting wide.png azimuth_deg -70
 value=$(bright wide.png)
 [ "$value" -gt 100 ] && [ "$value" -lt 255 ] || fail "the bright one is $value bright"
-# What is asked of lobes where layers draw is said to be idle, and whose errors the levels have.
+# What is asked of lobes where components draw is said to be idle, and whose errors the levels have.
 expect_ok render dark.weft --lobes-on none --size 60x40 --samples 1 -o idle.png
-grep -q "drawn by its layers: --lobes-on" out.log || fail "nobody says that --lobes-on changes nothing beside layers"
+grep -q "drawn by its components: --lobes-on" out.log || fail "nobody says that --lobes-on changes nothing beside components"
 expect_ok render dark.weft --components 0 --lobes-on none --size 60x40 --samples 1 -o lobes.png
-grep -q "drawn by its layers" out.log && fail "lobes that are drawn are said to be idle"
+grep -q "drawn by its components" out.log && fail "lobes that are drawn are said to be idle"
 expect_ok info dark.weft
-grep -q "fitted_level_0_diffuse_term" out.log || fail "info calls the diffuse term beside layers lobes: $(cat out.log)"
-grep -q "errors_of: diffuse term beside the layers" out.log || fail "info does not say whose errors the levels of a layered material have"
+grep -q "fitted_level_0:" out.log || fail "info does not say the error of components: $(cat out.log)"
+grep -q "errors_of: components" out.log || fail "info does not say whose errors the levels of a material of components have"
 
 # Of one photograph nothing can be left out, and nothing is said of what the others say.
 echo "30,0,0,0" | photograph alone "30%"
-grep -q "a photograph alone tells nothing of other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
+grep -q "one photograph shows nothing of other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
 grep -q "by the others" out.log && fail "there are no others"
 # Paper that is brighter on the right: where it is repeated a line is seen.
 mkdir slope

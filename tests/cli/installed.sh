@@ -53,9 +53,9 @@ expect_completed() {
     passed=$((passed + 1))
 }
 expect_completed "calibrate capture colour compare compress" c
-expect_completed "--components --levels --light-table --lobes" compress --l
-expect_completed "given off on" compress silk.btf.h5 --frames = ""
-expect_completed "off on" compress silk.btf.h5 --frames = o
+expect_completed "--lobes" compress --l
+expect_completed "even screen" compress silk.btf.h5 --weights = ""
+expect_completed "screen" compress silk.btf.h5 --weights = s
 expect_completed "silk.btf.h5" compress silk.b
 expect_completed "moved night silk.btf.h5 stage" compress ""
 expect_completed "moved night silk.weft stage" compare silk.btf.h5 ""

@@ -25,7 +25,7 @@ import json, os, re
 events = [json.loads(line) for line in open("events.log")]
 predicted = next(e for e in events if e["event"] == "predicted")
 measured = next(e for e in events if e["event"] == "held_out")
-first_fit = next(i for i, e in enumerate(events) if e.get("stage") == "fitting texels")
+first_fit = next(i for i, e in enumerate(events) if e.get("stage") in ("fitting texels", "learning components"))
 assert events.index(predicted) < first_fit, "it is said after the work"
 size = os.path.getsize("knit.weft")
 assert abs(predicted["bytes"] / size - 1) < 0.02, (predicted["bytes"], size)
@@ -53,32 +53,31 @@ import os
 sizes = os.path.getsize("knit.weft"), os.path.getsize("plain.weft")
 assert 0 < sizes[0] - sizes[1] < 400, sizes
 PYTHON
-# What each texel is given by itself is predicted, too; a budget holds with what is added to the file.
-for asked in "--error 40" "--budget 0.03"; do
+# An error and a budget choose the number of components, and say what they chose before the work; a budget holds with
+# what is added to the file.
+for asked in "--error 40" "--budget 0.04"; do
     # shellcheck disable=SC2086
     expect_ok compress knit.btf.h5 -o chosen.weft $asked --json
     cp out.log events.log
-    expect_ok info chosen.weft --json
     asked=$asked "$python" - <<'PYTHON' || fail "compress $asked does not keep to what it says"
 import json, os, re
 events = [json.loads(line) for line in open("events.log")]
-predicted = next(e for e in events if e["event"] == "predicted")
+chosen = next(e for e in events if e["event"] == "chosen")
 measured = next(e for e in events if e["event"] == "held_out")
-assert events.index(predicted) < next(i for i, e in enumerate(events) if e.get("stage") == "fitting texels")
-size = os.path.getsize("chosen.weft")
-assert abs(predicted["bytes"] / size - 1) < 0.02, (predicted["bytes"], size)
-# Of 64 texels and 49 photographs five are held out, others each time.
-assert abs(predicted["relative_rmse"] / measured["not_fitted"]["relative_rmse"] - 1) < 0.4, (predicted, measured)
-assert predicted["options"] == os.environ["asked"] and "preset" not in predicted, predicted
-assert any(re.match(r"predicted [0-9.]+ MB, is [0-9.]+ MB", e["text"]) for e in events if e["event"] == "note")
-kept = json.loads(open("out.log").read())["metadata"]["predicted"]
-assert kept == {k: v for k, v in predicted.items() if k not in ("event", "frame_ms")}, kept
-assert "--error" in os.environ["asked"] or size <= 30000, size
+assert events.index(chosen) < next(i for i, e in enumerate(events) if e.get("stage") == "learning components")
+assert 4 <= chosen["components"] <= 64 and chosen["components"] % 4 == 0, chosen
+if "--error" in os.environ["asked"]:
+    assert chosen["met"] == (chosen["relative_rmse"] <= 0.4), chosen
+    assert chosen["relative_rmse"] == measured["not_fitted"]["relative_rmse"], (chosen, measured)
+else:
+    size = os.path.getsize("chosen.weft")
+    assert size <= 40000 and abs(chosen["predicted_bytes"] / size - 1) < 0.05, (chosen, size)
+    assert any(re.match(r"predicted [0-9.]+ MB, is [0-9.]+ MB", e["text"]) for e in events if e["event"] == "note")
 PYTHON
     [ "$(ls -A | grep -c held-out)" = 0 ] || fail "compress $asked leaves files behind"
 done
 
-for option in "--lobes 2" "--table off" "--components 8" "--light-table on" "--rounding on" "--frames off" "--error 5" "--budget 1"; do
+for option in "--lobes 2" "--components 8" "--error 5" "--budget 1"; do
     # shellcheck disable=SC2086
     expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --preset small $option
 done
@@ -86,5 +85,3 @@ expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --fps 20 --c
 expect_error 2 "--fps" compress knit.btf.h5 -o none.weft --fps 0
 expect_error 2 "--preset" compress knit.btf.h5 -o none.weft --preset tiny
 expect_no_file none.weft
-expect_error 2 "--rounding is for layers" compress knit.btf.h5 -o none.weft --lobes 2 --rounding on
-expect_error 2 "--rounding is for layers" compress knit.btf.h5 -o none.weft --components 0 --rounding on

@@ -27,7 +27,6 @@ expect_ok info open.btf.h5
 grep -q "Open weave" out.log || fail "the dataset does not name its stitch"
 grep -q "frames: given" out.log || fail "the dataset does not know its frames"
 expect_ok compress open.btf.h5 --lobes 1 -o open.weft
-expect_ok compress open.btf.h5 --lobes 1 --frames given -o given.weft
 cp open.btf.h5 bent.btf.h5
 "$python" -c 'import h5py; h5py.File("bent.btf.h5", "r+")["frame"][1, 2, 0] = [0, 3, 4]' || exit 77
 expect_error 1 "bent.btf.h5': frame of texel (2, 1)" verify bent.btf.h5

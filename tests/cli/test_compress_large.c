@@ -133,11 +133,10 @@ static void killed_again_and_again_it_ends_with_the_same_bytes(void **state)
     expect_done(&got, "going on after");
 }
 
-/* Whatever a texel may have must be in the checkpoint. */
-static void other_models_go_on_as_well(void **state)
+static void other_weights_go_on_as_well(void **state)
 {
     (void)state;
-    const char *const option[][4] = {{"--error", "25"}, {"--light-table", "on"}};
+    const char *const option[][4] = {{"--weights", "screen"}};
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
         disturbed got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option[i]);
         expect_says(&got, 0, "fitted in");
@@ -193,7 +192,7 @@ static void a_checkpoint_of_other_options_or_another_dataset_is_discarded(void *
     (void)state;
     keep_some_blocks();
     copy_file("large.kept", partial_path, SIZE_MAX);
-    disturbed got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--max-exponent", "500"});
+    disturbed got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--weights", "screen"});
     expect_says(&got, 0, "is discarded: it was made with other options");
     copy_file(dataset_path, "other.btf.h5", SIZE_MAX);
     copy_file("large.kept", partial_path, SIZE_MAX);
@@ -251,36 +250,6 @@ static void threads_change_no_byte(void **state)
 /* How much of the libraries is resident differs from run to run: by 4 MB beside other work. */
 enum { RESIDENT_NOISE_MB = 8 };
 
-/* With much memory, with too little, and with what that says it needs. */
-static void expect_little_memory_suffices(const char *option, const char *value)
-{
-    const char *const whole[4] = {option, value, "--memory", "100000"};
-    disturbed got = compress_dataset(dataset_path, "large-free.weft", no_limit, whole);
-    expect_says(&got, 0, "fitted in");
-    got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){option, value, "--memory", "1"});
-    expect_says(&got, 2, "more than the limit of 1 MB");
-    const char *needs = strstr(got.said, " needs ");
-    assert_non_null(needs);
-    char limit[32];
-    long least = strtol(needs + strlen(" needs "), NULL, 10) + RESIDENT_NOISE_MB;
-    snprintf(limit, sizeof limit, "%ld", least);
-    got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){option, value, "--memory", limit});
-    expect_says(&got, 0, "fitted in");
-    if (got.peak_kb * 1024 > least * 1000000)
-        fail_msg("%s %s: %ld kB of memory, allowed were %s MB", option, value, got.peak_kb, limit);
-    expect_same_bytes(path, "large-free.weft");
-    unlink(path);
-}
-
-static void other_ways_to_store_keep_to_the_memory_too(void **state)
-{
-    (void)state;
-#if defined(__SANITIZE_ADDRESS__)
-    skip(); /* its allocator keeps what is freed */
-#endif
-    expect_little_memory_suffices("--budget", "0.3");
-}
-
 static void little_memory_changes_no_byte_and_is_not_exceeded(void **state)
 {
     (void)state;
@@ -313,7 +282,7 @@ int test_compress_large(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(killed_again_and_again_it_ends_with_the_same_bytes),
-        cmocka_unit_test(other_models_go_on_as_well),
+        cmocka_unit_test(other_weights_go_on_as_well),
         cmocka_unit_test(a_checkpoint_cut_anywhere_goes_on),
         cmocka_unit_test(a_damaged_checkpoint_is_discarded),
         cmocka_unit_test(a_checkpoint_of_other_options_or_another_dataset_is_discarded),
@@ -322,7 +291,6 @@ int test_compress_large(void)
         cmocka_unit_test(two_at_a_time_to_one_output_are_refused),
         cmocka_unit_test(threads_change_no_byte),
         cmocka_unit_test(little_memory_changes_no_byte_and_is_not_exceeded),
-        cmocka_unit_test(other_ways_to_store_keep_to_the_memory_too),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }

@@ -64,7 +64,7 @@ awk 'BEGIN {
 expect_ok simulate "$assets/stitches/plain_knit.stitch" -o wide.btf.h5 --plane top --heights off --size 26x4 --noise 10 --bounces 0 \
     --resolution 20 --directions ten.csv --seed 3
 expect_says "times, on 96 of 104 texels, lobes on 64:" tradeoff wide.btf.h5 -o wide
-for options in "--lobes 1" "--components 8 --rounding on"; do
+for options in "--lobes 1" "--components 8"; do
     # shellcheck disable=SC2086
     expect_ok compress wide.btf.h5 -o wide.weft $options --json
     cp out.log events.log

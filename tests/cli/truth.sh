@@ -39,7 +39,7 @@ for event in events:
         assert event[p]["low"] <= event[p]["value"] <= event[p]["high"], event
     assert math.isclose(event["relative_rmse"] ** 2, whole, rel_tol=1e-4) and 0.001 < whole < 1, event
     assert event["queries"] + event["queries_unseen"] == 100 and event["photographs"] == 65, event
-    assert event["layers"] == 8 and math.isclose(event["outermost_deg"], 35, rel_tol=1e-6), event
+    assert event["components"] == 8 and math.isclose(event["outermost_deg"], 35, rel_tol=1e-6), event
 assert math.isclose(events[1]["opening_mm"], 2, rel_tol=1e-9) and events[0]["opening_mm"] == 32, events
 PYTHON
 [ "$(ls -A report | tr '\n' ' ')" = "index.html sources.csv " ] || fail "something is left behind: $(ls -A report)"

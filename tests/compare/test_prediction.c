@@ -3,6 +3,7 @@
 
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
+#include "compare/tradeoff/component_count.h"
 #include "compare/tradeoff/frame_timer.h"
 #include "compare/tradeoff/preset.h"
 #include "compress/compress.h"
@@ -98,7 +99,6 @@ static void a_prediction_keeps_to_the_memory_that_is_allowed(void **state)
     weft_compress_options options = weft_compress_default_options();
     weft_prediction prediction = {.model = "diffuse", .error = 0.5};
     options.component_count = options.lobe_count = 0;
-    options.table = false;
     options.memory_bytes = weft_memory_budget_taken(&now) + once + once / 2;
     assert_int_equal(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), WEFT_BAD_USAGE);
     assert_non_null(strstr(error.message, "the texels by which its size is predicted"));
@@ -125,7 +125,6 @@ static void a_preset_predicts_size_and_error(void **state)
     expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
     expect_speed(prediction);
     assert_int_equal(options.weights, WEFT_WEIGHTS_SCREEN);
-    assert_false(options.light_table);
     double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
     assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
     double measured = held_out.material.all.relative_rmse;
@@ -159,7 +158,6 @@ static void size_is_that_of_all_texels(void **state)
     weft_hold_out held_out;
     options.component_count = 0;
     options.lobe_count = 1;
-    options.table = false;
     expect_ok(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), &error);
     double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
     print_message("predicted %.0f bytes, is %.0f\n", prediction.bytes, bytes);
@@ -170,42 +168,30 @@ static void size_is_that_of_all_texels(void **state)
 }
 
 /* All texels are in the prediction, too: it holds to the length of the metadata. */
-static void what_is_asked_for_is_predicted(void **state)
+static void components_are_chosen_by_size_and_by_error(void **state)
 {
     (void)state;
-    static const struct {
-        double target;
-        uint64_t budget;
-        const char *arguments;
-    } row[] = {{0.2, 0, "--error 20"}, {0, 26000, "--budget 0.026"}};
     weft_dataset *dataset;
     weft_error error = {0};
     fixture_far_dataset(path, 16, 12, 4, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    for (int i = 0; i < 2; i++) {
-        weft_compress_options options = weft_compress_default_options();
-        weft_prediction prediction;
-        weft_hold_out held_out;
-        uint64_t own;
-        options.target_error = row[i].target;
-        options.budget_bytes = row[i].budget;
-        options.component_count = 0;
-        const weft_preset_wish wish = {.preset = WEFT_PRESET_NONE};
-        expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
-        assert_string_equal(prediction.arguments, row[i].arguments);
-        expect_ok(weft_prediction_added_bytes(dataset, &options, &prediction, &own, &error), &error);
-        options.added_bytes = own;
-        double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
-        double measured = held_out.material.all.relative_rmse;
-        print_message("%s: predicted %.0f bytes, is %.0f; error %.4f, is %.4f\n", row[i].arguments, prediction.bytes,
-                      bytes, prediction.error, measured);
-        assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
-        assert_float_equal(prediction.error, measured, 0.1 * measured);
-        assert_true(row[i].budget == 0 || bytes <= (double)row[i].budget);
-        json_t *kept = weft_prediction_to_json(&prediction);
-        assert_null(json_object_get(kept, "preset"));
-        json_decref(kept);
-    }
+    weft_compress_options options = weft_compress_default_options();
+    weft_component_count of_size, of_error;
+    expect_ok(weft_components_for_size(dataset, &options, 1, scratch, NULL, &of_size, &error), &error);
+    assert_true(!of_size.is_met && of_size.count == 4);
+    uint64_t budget = (uint64_t)(1.5 * of_size.bytes);
+    expect_ok(weft_components_for_size(dataset, &options, budget, scratch, NULL, &of_size, &error), &error);
+    assert_true(of_size.is_met && of_size.bytes <= (double)budget && of_size.count < 64);
+    weft_prediction prediction = {.model = "components", .arguments = "--components 8", .error = 0.123456789};
+    weft_hold_out held_out;
+    options.component_count = of_size.count;
+    double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
+    print_message("%d components: predicted %.0f bytes, is %.0f\n", of_size.count, of_size.bytes, bytes);
+    assert_float_equal(of_size.bytes, bytes, 0.02 * bytes);
+    expect_ok(weft_components_for_error(dataset, &options, 0.9, 1, scratch, NULL, &of_error, &error), &error);
+    assert_true(of_error.is_met && of_error.count == 4 && of_error.held_out.split_count == 1);
+    expect_ok(weft_components_for_error(dataset, &options, 1e-6, 1, scratch, NULL, &of_error, &error), &error);
+    assert_true(!of_error.is_met && of_error.held_out.material.all.relative_rmse > 1e-6);
     weft_dataset_close(dataset);
     unlink(path);
 }
@@ -217,7 +203,7 @@ int test_prediction(void)
         cmocka_unit_test(a_prediction_keeps_to_the_memory_that_is_allowed),
         cmocka_unit_test(a_preset_predicts_size_and_error),
         cmocka_unit_test(size_is_that_of_all_texels),
-        cmocka_unit_test(what_is_asked_for_is_predicted),
+        cmocka_unit_test(components_are_chosen_by_size_and_by_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static void the_list_ends_with_what_is_no_fit(void **state)
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_dataset_layout full = grid_layout(DIRECTIONS), few = grid_layout(7);
     const weft_priced_dataset with_cloth = {.cloth = weave}, without = {0},
-                              with_all = {.has_opacity = true, .has_surface = true, .cloth = weave};
+                              with_all = {.has_surface = true, .cloth = weave};
     int count = weft_priced_models_list(&full, &with_cloth, model);
     for (size_t i = 0; i < sizeof alone / sizeof *alone; i++) {
         assert_non_null(find(model, count, alone[i]));

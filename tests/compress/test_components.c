@@ -143,8 +143,6 @@ static void write_dataset(synthetic_fill *fill, weft_distance distance)
 static weft_compress_options options_for_components(void)
 {
     weft_compress_options options = weft_compress_default_options();
-    options.lobe_count = 0;
-    options.table = false;
     options.component_count = COMPONENTS;
     return options;
 }
@@ -239,9 +237,9 @@ static void what_is_rounded_does_not_show(void **state)
     weft_compress_report of_exact, of_rounded;
     weft_compress_options options = options_for_components();
     write_dataset(fill_widths, WEFT_FAR);
-    fit(&options, &exact, &of_exact);
-    options.rounded = true;
     fit(&options, &rounded, &of_rounded);
+    options.finer = true;
+    fit(&options, &exact, &of_exact);
     double ratio = of_rounded.components.fitted.relative_rmse / of_exact.components.fitted.relative_rmse;
     print_message("%.5f of the error without rounding\n", ratio);
     assert_false(weft_components_have_differences(exact.components));
@@ -257,7 +255,6 @@ static void what_is_all_but_exact_is_rounded_no_finer_than_half_floats(void **st
     (void)state;
     weft_material material;
     weft_compress_options options = options_for_components();
-    options.rounded = true;
     write_dataset(fill_mixture, WEFT_FAR);
     fit(&options, &material, NULL);
     assert_true(weft_components_have_differences(material.components));

@@ -2,7 +2,6 @@
 #include "tests/support/cmocka_all.h"
 
 #include "base/atomic_file.h"
-#include "base/picture/image.h"
 #include "btf/direction/direction.h"
 #include "btf/material/material.h"
 #include "tests/support/run_weft.h"
@@ -45,11 +44,6 @@ static void a_dataset_becomes_a_material_with_a_table_of_errors(void **state)
     assert_int_equal(material.level_count, 3);
     assert_true(material.level[0].error.relative_rmse > 0);
     assert_non_null(strstr(material.metadata, "lobes and view table"));
-    weft_material_free(&material);
-    expect_weft("compress command.btf.h5 -o command.weft --table off --levels off --lobes 0 --quiet", 0, "");
-    assert_int_equal(weft_material_read("command.weft", &material, NULL), WEFT_OK);
-    assert_int_equal(material.view_count, 0);
-    assert_int_equal(material.level_count, 1);
     weft_material_free(&material);
 }
 
@@ -107,40 +101,6 @@ static void weights_are_kept_with_the_material(void **state)
     expect_weft("compress command.btf.h5 -o a.weft --weights bright", 2, "'bright'");
 }
 
-static void a_target_error_says_how_many_texels_miss_it(void **state)
-{
-    (void)state;
-    expect_weft("compress command.btf.h5 -o target.weft --error 90", 0, "0 of 9 texels");
-    expect_weft("compress command.btf.h5 -o target.weft --error 0.1", 0, "9 of 9 texels");
-}
-
-static void a_budget_is_kept_and_reported_in_a_picture(void **state)
-{
-    (void)state;
-    weft_image picture;
-    expect_weft("compress command.btf.h5 -o budget.weft --budget 0.008 --report report", 0, "budget.weft: 0.0");
-    assert_in_range(weft_file_bytes("budget.weft"), 1, 8000);
-    assert_int_equal(weft_image_read("report/models.png", &picture, NULL, NULL), WEFT_OK);
-    weft_image_free(&picture);
-    assert_int_equal(access("report/index.html", F_OK), 0);
-    expect_weft("compress command.btf.h5 -o none.weft --budget 0.001", 2, "too small");
-    expect_weft("compress command.btf.h5 -o none.weft --budget 1 --error 3", 2, "not both");
-    expect_weft("compress command.btf.h5 -o none.weft --report report", 2, "needs --error or --budget");
-    assert_int_not_equal(access("none.weft", F_OK), 0);
-}
-
-static void wrong_usage_is_2(void **state)
-{
-    (void)state;
-    expect_weft("compress command.btf.h5", 2, "-o NAME.weft");
-    expect_weft("compress command.btf.h5 -o a.weft --lobes 4", 2, "'4'");
-    expect_weft("compress command.btf.h5 -o a.weft --table maybe", 2, "'maybe'");
-    expect_weft("compress command.btf.h5 -o a.weft --max-exponent 0", 2, "'0'");
-    expect_weft("compress command.btf.h5 -o a.weft --error 0", 2, "'0'");
-    expect_weft("compress command.btf.h5 other.btf.h5 -o a.weft", 2, "other.btf.h5");
-    expect_weft("compress --help", 0, "Example: weft compress");
-}
-
 /* `views` views of `lights` directions each. */
 static void write_few_images(int views, int lights)
 {
@@ -156,31 +116,110 @@ static void write_few_images(int views, int lights)
     weft_dataset_layout_free(&layout);
 }
 
+static int components_of(const char *path)
+{
+    weft_material material;
+    assert_int_equal(weft_material_read(path, &material, NULL), WEFT_OK);
+    int count = material.components ? material.components->component_count : 0;
+    weft_material_free(&material);
+    return count;
+}
+
+static void an_error_chooses_the_fewest_components_that_keep_it(void **state)
+{
+    (void)state;
+    char said[RUN_WEFT_SAID];
+    write_few_images(4, 12);
+    expect_weft("compress few.btf.h5 -o error.weft --error 90 --hold-out 1", 0, "4 components: the fewest");
+    assert_int_equal(components_of("error.weft"), 4);
+    assert_int_equal(run_weft("", "compress few.btf.h5 -o error.weft --error 0.01 --hold-out 1 --json", said), 0);
+    assert_non_null(strstr(said, "\"event\":\"chosen\""));
+    assert_non_null(strstr(said, "\"met\":false"));
+    assert_non_null(strstr(said, "come nearest"));
+    assert_true(components_of("error.weft") >= 4);
+    expect_weft("compress command.btf.h5 -o none.weft --error 5 --hold-out off", 2, "--hold-out off");
+}
+
+static void a_budget_chooses_the_most_components_that_fit(void **state)
+{
+    (void)state;
+    write_few_images(4, 12);
+    expect_weft("compress few.btf.h5 -o large.weft --budget 100 --hold-out off", 0, "64 components: the most");
+    assert_int_equal(components_of("large.weft"), 64);
+    expect_weft("compress few.btf.h5 -o eight.weft --components 8 --hold-out off", 0, "");
+    char arguments[128];
+    uint64_t bytes = weft_file_bytes("eight.weft") + 2000;
+    snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o budget.weft --budget %.6f --hold-out off",
+             1e-6 * (double)bytes);
+    expect_weft(arguments, 0, "components: the most");
+    assert_in_range(weft_file_bytes("budget.weft"), 1, bytes);
+    assert_in_range(components_of("budget.weft"), 8, 64);
+    expect_weft("compress few.btf.h5 -o none.weft --budget 0.001", 2, "too small");
+    assert_int_not_equal(access("none.weft", F_OK), 0);
+}
+
+static void wrong_usage_is_2(void **state)
+{
+    (void)state;
+    expect_weft("compress command.btf.h5", 2, "-o NAME.weft");
+    expect_weft("compress command.btf.h5 -o a.weft --lobes 4", 2, "'4'");
+    expect_weft("compress command.btf.h5 -o a.weft --lobes 0", 2, "'0'");
+    expect_weft("compress command.btf.h5 -o a.weft --components 6", 2, "a multiple of 4");
+    expect_weft("compress command.btf.h5 -o a.weft --error 0", 2, "'0'");
+    expect_weft("compress command.btf.h5 other.btf.h5 -o a.weft", 2, "other.btf.h5");
+    expect_weft("compress --help", 0, "Example: weft compress");
+    expect_weft("compress --help", 0, "(default: even)");
+}
+
+/* One choice of a model, and no two. */
+static void choices_of_a_model_exclude_each_other(void **state)
+{
+    (void)state;
+    static const char *const choice[] = {"--components 8", "--lobes 2", "--error 5", "--budget 1", "--preset small"};
+    for (int i = 0; i < 5; i++) {
+        for (int j = i + 1; j < 5; j++) {
+            char arguments[128];
+            snprintf(arguments, sizeof arguments, "compress command.btf.h5 -o a.weft %s %s", choice[i], choice[j]);
+            expect_weft(arguments, 2, "give one of them");
+        }
+    }
+    assert_int_not_equal(access("a.weft", F_OK), 0);
+}
+
+static void removed_options_say_what_to_do_instead(void **state)
+{
+    (void)state;
+    static const char *const gone[] = {"--table off",  "--light-table on", "--tables pca:4",     "--tables=8bit",
+                                       "--levels off", "--heights off",    "--rounding on",      "--frames off",
+                                       "--report r",   "--max-exponent 9", "--max-exponent=512", "--table"};
+    for (size_t i = 0; i < sizeof gone / sizeof *gone; i++) {
+        char arguments[128];
+        snprintf(arguments, sizeof arguments, "compress command.btf.h5 -o a.weft %s", gone[i]);
+        expect_weft(arguments, 2, "is gone since 0.2: ");
+    }
+    char said[RUN_WEFT_SAID];
+    assert_int_equal(run_weft("", "compress --help", said), 0);
+    assert_null(strstr(said, "--rounding"));
+    assert_null(strstr(said, "--layers"));
+    expect_weft("compress command.btf.h5 -o former.weft --layers 4 --hold-out off", 0, "--layers is now --components");
+    assert_int_equal(components_of("former.weft"), 4);
+}
+
 /* What the images cannot carry is said, and all else is done. */
-static void options_that_change_nothing_are_named(void **state)
+static void what_the_images_do_not_suffice_for_is_named(void **state)
 {
     (void)state;
     char said[RUN_WEFT_SAID];
     write_few_images(1, 81);
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --light-table on", 0, "--light-table changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --frames given", 0, "--frames given is that of the surface");
-    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --lobes 2 --weights screen --max-exponent 9", said),
-                     0);
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2", 0, "no view table");
+    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --lobes 2 --weights screen", said), 0);
     assert_null(strstr(said, "changes nothing"));
     write_few_images(1, 12);
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --light-table on", 0, "--light-table changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --weights screen", 0, "--weights changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --frames off", 0, "--frames changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --max-exponent 9", 0, "--max-exponent changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --frames off", 0,
-                "components instead of lobes --frames changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --max-exponent 9", 0, "--max-exponent changes nothing");
     assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --hold-out off", said), 0);
     assert_null(strstr(said, "changes nothing"));
     assert_non_null(strstr(said, "no grid"));
     expect_weft("info few.weft", 0, "kriging");
-    assert_int_equal(run_weft("", "compress command.btf.h5 -o few.weft --light-table on", said), 0);
-    assert_null(strstr(said, "changes nothing"));
 }
 
 /* How many components and lobes a material has that is made of `views` views of `lights` lights each. */
@@ -189,8 +228,7 @@ static void expect_model(int views, int lights, const char *options, int compone
     char arguments[256];
     weft_material material;
     write_few_images(views, lights);
-    snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o few.weft --hold-out off --levels off --quiet %s",
-             options);
+    snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o few.weft --hold-out off --quiet %s", options);
     expect_weft(arguments, 0, "");
     assert_int_equal(weft_material_read("few.weft", &material, NULL), WEFT_OK);
     int found = material.components ? material.components->component_count : 0;
@@ -207,44 +245,32 @@ static void components_are_the_default_and_their_number_is_that_of_the_photograp
     expect_model(8, 12, "", 16, 0);
     expect_model(5, 20, "", 32, 0);
     expect_model(50, 2, "", 32, 0);
-    expect_model(4, 12, "--weights screen --frames on", 16, 0);
+    expect_model(4, 12, "--weights screen", 16, 0);
 }
 
-static void what_only_lobes_have_asks_for_lobes(void **state)
+static void the_model_is_the_one_that_was_asked_for(void **state)
 {
     (void)state;
-    static const char *const options[] = {"--lobes 2",        "--table on",       "--components 0", "--frames off",
-                                          "--max-exponent 9", "--light-table on", "--error 50",     "--budget 1"};
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
-        expect_model(4, 12, options[i], 0, 2);
+    expect_model(4, 12, "--lobes 2", 0, 2);
     expect_model(4, 12, "--components 4", 4, 0);
-    expect_model(4, 12, "--components 4 --lobes 1", 4, 1);
 }
 
-/* Programs that read the file or the events are told what the material is, and what the errors of its levels are of. */
-static void a_layered_material_says_that_it_is_one(void **state)
+/* Programs that read the file are told what the material is. */
+static void a_material_says_what_model_it_has(void **state)
 {
     (void)state;
-    static const struct {
-        const char *options, *model, *errors_of;
-    } expected[] = {
-        {"--components 4", "\"model\":\"components\"", "\"errors_of\":\"diffuse term beside the components\""},
-        {"--components 4 --lobes 1", "\"model\":\"components beside lobes\"",
-         "\"errors_of\":\"lobes beside the components\""},
-        {"--lobes 1", "\"model\":\"lobes and view table\"", NULL},
-    };
+    static const char *const expected[][2] = {{"--components 4", "\"model\":\"components\""},
+                                              {"--lobes 1", "\"model\":\"lobes and view table\""}};
     write_few_images(4, 12);
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
-        char arguments[256], said[8192];
+        char arguments[256];
         weft_material material;
-        snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o few.weft --hold-out off --json %s",
-                 expected[i].options);
-        assert_int_equal(run_weft("", arguments, said), 0);
+        snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o few.weft --hold-out off --quiet %s",
+                 expected[i][0]);
+        expect_weft(arguments, 0, "");
         assert_int_equal(weft_material_read("few.weft", &material, NULL), WEFT_OK);
-        if (!strstr(material.metadata, expected[i].model))
-            fail_msg("no %s in %s", expected[i].model, material.metadata);
-        if (expected[i].errors_of ? !strstr(said, expected[i].errors_of) : !!strstr(said, "errors_of"))
-            fail_msg("%s: %s", expected[i].options, said);
+        if (!strstr(material.metadata, expected[i][1]))
+            fail_msg("no %s in %s", expected[i][1], material.metadata);
         weft_material_free(&material);
     }
 }
@@ -282,13 +308,15 @@ int test_compress_command(void)
         cmocka_unit_test(the_error_where_it_was_not_fitted_is_said_and_kept),
         cmocka_unit_test(the_fit_itself_has_all_images_with_or_without),
         cmocka_unit_test(weights_are_kept_with_the_material),
-        cmocka_unit_test(a_target_error_says_how_many_texels_miss_it),
-        cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),
+        cmocka_unit_test(an_error_chooses_the_fewest_components_that_keep_it),
+        cmocka_unit_test(a_budget_chooses_the_most_components_that_fit),
         cmocka_unit_test(wrong_usage_is_2),
-        cmocka_unit_test(options_that_change_nothing_are_named),
+        cmocka_unit_test(choices_of_a_model_exclude_each_other),
+        cmocka_unit_test(removed_options_say_what_to_do_instead),
+        cmocka_unit_test(what_the_images_do_not_suffice_for_is_named),
         cmocka_unit_test(components_are_the_default_and_their_number_is_that_of_the_photographs),
-        cmocka_unit_test(what_only_lobes_have_asks_for_lobes),
-        cmocka_unit_test(a_layered_material_says_that_it_is_one),
+        cmocka_unit_test(the_model_is_the_one_that_was_asked_for),
+        cmocka_unit_test(a_material_says_what_model_it_has),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
     };

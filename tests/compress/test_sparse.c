@@ -135,8 +135,6 @@ static void many_near_images_are_fitted_with_the_directions_of_each_texel(void *
     weft_material material = compress_file("near.btf.h5", NULL, &report);
     assert_int_equal(report.model, WEFT_COMPRESS_LOBES);
     assert_int_equal(material.view_count, 0);
-    /* Of many texels no image shows more than the flank of the highlight, which is more than four times as bright. */
-    assert_in_range(report.held_texel_count, 1, report.texel_count - 1);
     assert_true(material.level[0].error.relative_rmse < 0.08);
     assert_true(material.level[0].error.median_relative < 0.01);
     weft_material_free(&material);

@@ -106,7 +106,7 @@ static void collect_level(int side_level, int level, float *result)
     assert_int_equal(weft_pyramid_create(&plan, held_out, IMAGES, 2, &pyramid, NULL), WEFT_OK);
     assert_int_equal(weft_thread_pool_create(2, &pool, NULL), WEFT_OK);
     for (size_t i = 0; i < plan.count; i++) {
-        const weft_texel_block block = {plan.place[i], samples, mask};
+        const weft_block_samples block = {plan.place[i], samples, mask};
         copy_block(&block.place, samples, mask);
         weft_pyramid_sum_block(&pyramid, pool, &block);
         weft_pyramid_pass_up(&pyramid, plan.finished[i]);
@@ -229,7 +229,7 @@ static void blocks_come_in_order_and_whole(void **state)
     uint8_t expected_mask[16 * 12];
     for (size_t given = 0; given <= 3; given++) { /* freed before the end, too */
         weft_block_reader *reader;
-        const weft_texel_block *block;
+        const weft_block_samples *block;
         assert_int_equal(weft_block_reader_create(dataset, place, 3, 16, &reader, NULL), WEFT_OK);
         weft_block_reader_next(reader, &block, NULL);
         weft_block_reader_free(reader);
@@ -257,7 +257,7 @@ static void an_error_of_reading_reaches_the_caller(void **state)
     weft_dataset *dataset = synthetic_dataset_open("ahead.btf.h5");
     const weft_block_place place[2] = {{0, 0, 4, 4}, {8, 4, 4, 2}}; /* the second is outside */
     weft_block_reader *reader;
-    const weft_texel_block *block;
+    const weft_block_samples *block;
     weft_error error = {0};
     assert_int_equal(weft_block_reader_create(dataset, place, 2, 16, &reader, NULL), WEFT_OK);
     assert_int_equal(weft_block_reader_next(reader, &block, &error), WEFT_OK);

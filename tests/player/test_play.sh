@@ -53,7 +53,7 @@ for key in 1 3 s w x 2 m n bracketright c o; do
 done
 "$weft" render --settings "$next" -o again.png --quiet
 cmp "$next" again.png || { echo "the last screenshot cannot be drawn again"; exit 1; }
-"$weft" compress cloth.btf.h5 -o other.weft --lobes 1 --table off --quiet
+"$weft" compress cloth.btf.h5 -o other.weft --lobes 1 --quiet
 mv other.weft cloth.weft
 sleep 2
 shoot "the material was written again"

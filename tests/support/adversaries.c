@@ -1,7 +1,6 @@
 #include "adversaries.h"
 
 #include "btf/direction/direction.h"
-#include "compress/options/options.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "synthetic_dataset.h"
 #include "synthetic_texel.h"
@@ -225,6 +224,17 @@ static weft_vec3 view_for(weft_vec3 light, long trial)
     return weft_vec3_of(0, 0, 1);
 }
 
+/* Of a texel: its channels share one ceiling. */
+static double ceiling_of(const adversary_limits *limits, int x)
+{
+    double r = 0, f = 0;
+    for (int k = 0; k < 3; k++) {
+        r = fmax(r, limits->r[x][k]);
+        f = fmax(f, limits->f[x][k]);
+    }
+    return fmax(f, 4 * r / limits->highest);
+}
+
 weft_code adversary_largest_share(const weft_material *material, const adversary_limits *limits, uint64_t seed,
                                   long trials, double *share, weft_error *error)
 {
@@ -238,9 +248,8 @@ weft_code adversary_largest_share(const weft_material *material, const adversary
             weft_rgba value = weft_material_texel(material, &directions, 0, x, 0, light, view);
             const double f[3] = {value.r, value.g, value.b};
             for (int k = 0; k < 3; k++) {
-                double by_f = f[k] / limits->f[x][k], by_r = f[k] * light.z * limits->highest / limits->r[x][k];
                 bool is_sound = isfinite(f[k]) && f[k] >= 0;
-                *share = is_sound ? fmax(*share, fmax(by_f, by_r) / WEFT_BRIGHTEST_MULTIPLE) : INFINITY;
+                *share = is_sound ? fmax(*share, f[k] / ceiling_of(limits, x)) : INFINITY;
             }
         }
     }

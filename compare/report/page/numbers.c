@@ -149,8 +149,11 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison)
     fputs("</p>\n", page->html);
 }
 
+/* Of components alone level 0 has an error, of the texels that they were learned from. */
 static void print_levels(weft_page *page, const weft_material *material)
 {
+    if (weft_material_has_components_alone(material))
+        return;
     fprintf(page->html, "<h2>Error of the %s on the samples it was fitted to, level by level</h2>\n",
             material->components ? weft_material_errors_of(material) : "material");
     if (material->components)

@@ -302,7 +302,6 @@ static void coarser_levels_of_a_material_are_as_narrow_as_they_are(void **state)
     weft_error error = {0};
     weft_compress_options options = weft_compress_default_options();
     options.component_count = options.lobe_count = 0;
-    options.table = false;
     fixture_far_dataset(path, 40, 40, 3, speckled, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     expect_ok(weft_hold_out_measure(dataset, &options, 1, "speckled-split.btf.h5", NULL, &result, &error), &error);

@@ -522,7 +522,6 @@ static void what_is_held_out_does_not_leak(void **state)
     fixture_far_dataset(path, 2, 1, 6, spoilt_diffuse, FIXTURE_MASK_NONE);
     weft_compress_options options = weft_compress_default_options();
     options.component_count = 0;
-    options.light_table = true;
     weft_hold_out result = measure(&options, 1);
     assert_int_equal(result.kind, WEFT_SPLIT_DIRECTIONS);
     const weft_error_summary *all[4] = {&result.material.all, &result.material.view, &result.material.light,
@@ -584,7 +583,6 @@ static void the_error_of_a_diffuse_term_is_that_computed_by_hand(void **state)
     weft_compress_options options = weft_compress_default_options();
     options.component_count = 0;
     options.lobe_count = 0;
-    options.table = false;
     weft_hold_out one = measure(&options, 1), two = measure(&options, 2);
     const uint8_t *held = weft_splits_held(&splits, 0), *next = weft_splits_held(&splits, 1);
     assert_float_equal(one.material.all.relative_rmse, curved_error(&layout, held, held, 0), 1e-3);

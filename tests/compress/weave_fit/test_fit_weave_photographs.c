@@ -57,7 +57,7 @@ static void register_photographs(void)
     settings.width = settings.height = TEXELS;
     if (weft_register_session(&session, "made.btf.h5", &settings, NULL, &registration, &error) != WEFT_OK)
         fail_msg("%s", error.message);
-    assert_int_equal(registration.failed_stays, 0);
+    assert_int_equal(registration.failed_viewpoints, 0);
     weft_registration_free(&registration);
     weft_session_free(&session);
 }

@@ -1,4 +1,4 @@
-#include "cli/compress_words.h"
+#include "cli/compress_report.h"
 
 #include "base/atomic_file.h"
 #include "btf/material/held_out.h"
@@ -17,91 +17,66 @@ static const double visible_share = 0.1, visible_difference = 1.5;
 /* Of more no seam is looked for: it would take more memory than the fit. */
 static const long most_texels_of_seam = 1L << 20;
 
-/* What a model for few images, or components, make nothing of. */
-static void say_idle(const weft_common_options *common, const weft_compress_options *given, const char *why)
+static const char *counted_lobes(int count)
 {
-    const weft_compress_options usual = weft_compress_default_options();
-    if (given->weights != usual.weights && given->component_count == 0)
-        weft_command_say(common, "with %s --weights changes nothing", why);
-    if (given->frames != usual.frames)
-        weft_command_say(common, "with %s --frames changes nothing", why);
-    if (given->max_exponent < usual.max_exponent || given->max_exponent > usual.max_exponent)
-        weft_command_say(common, "with %s --max-exponent changes nothing", why);
+    static const char *const words[] = {"no lobe", "1 lobe", "2 lobes", "3 lobes"};
+    return words[count];
 }
 
-static bool has_components_alone(const weft_compress_options *options)
-{
-    return options->component_count > 0 && options->lobe_count == 0;
-}
-
-static void say_model(const weft_compressed *done)
+/* Which model was fitted, and where it is less than was asked for. */
+static void report_model(const weft_compressed *done)
 {
     const weft_common_options *common = done->common;
-    const weft_compress_options *options = done->options;
     const weft_compress_report *report = done->report;
     const weft_dataset_layout *layout = weft_dataset_get_layout(done->dataset);
-    const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
-    if (has_components_alone(options))
-        weft_command_say(common, "%d x %d texels, %d images, %d components", layout->width, layout->height,
-                         layout->image_count, options->component_count);
+    char model[64];
+    if (report->model == WEFT_COMPRESS_COMPONENTS)
+        snprintf(model, sizeof model, "%d components", done->options->component_count);
     else
-        weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
-                         layout->image_count, report->lobe_count, table,
-                         report->light_count > 0 ? " and a light table" : "");
-    if (options->light_table && report->light_count == 0)
-        weft_command_say(common, "these images carry no light table: --light-table changes nothing");
-    if (has_components_alone(options))
-        say_idle(common, options, "components instead of lobes");
-    else if (report->model == WEFT_COMPRESS_SPARSE)
-        say_idle(common, options, "so few images");
-    else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(done->dataset))
-        weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
-    if (report->model == WEFT_COMPRESS_SPARSE && options->component_count == 0)
+        snprintf(model, sizeof model, "%s%s", counted_lobes(report->lobe_count),
+                 report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "");
+    weft_command_say(common, "%d x %d texels, %d images, %s", layout->width, layout->height, layout->image_count,
+                     model);
+    if (report->model == WEFT_COMPRESS_SPARSE)
         weft_command_say(common,
-                         "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
-                         "neighbours, only amplitudes are the texel's own",
+                         "%d images are too few to fit lobes in every texel: neighbours share exponents and normals, "
+                         "amplitudes are the texel's own",
                          layout->image_count);
-    else if (report->lobe_count < options->lobe_count || (options->table && report->model != WEFT_COMPRESS_TABLE))
-        weft_command_say(common, "%s: fitted %d lobes without a table",
-                         layout->distance == WEFT_NEAR ? "near cameras or too few images" : "too few images",
-                         report->lobe_count);
-    weft_command_say(common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
+    else if (report->model == WEFT_COMPRESS_LOBES)
+        weft_command_say(common, "%s: no view table",
+                         layout->distance == WEFT_NEAR ? "near cameras" : "too few images for its directions");
+    if (report->model == WEFT_COMPRESS_SPARSE && done->options->weights != WEFT_WEIGHTS_EVEN)
+        weft_command_say(common, "with so few images --weights changes nothing");
+}
+
+static void report_counts(const weft_compressed *done)
+{
+    const weft_compress_report *report = done->report;
+    double texels = (double)report->texel_count;
+    weft_command_say(done->common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
                      100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
                      report->texel_count);
-    if (!has_components_alone(options))
-        weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
-                         100.0 * (double)report->turned_frame_count / (double)report->texel_count,
-                         100.0 * (double)report->second_start_count / (double)report->texel_count);
-    if (report->held_texel_count > 0)
-        weft_command_say(common, "held to %d times their brightest sample: %ld of %ld texels", WEFT_BRIGHTEST_MULTIPLE,
-                         report->held_texel_count, report->texel_count);
-    if (report->stepped_down_count > 0)
-        weft_command_say(common, "served better by a smaller model: %ld of %ld texels", report->stepped_down_count,
-                         report->texel_count);
+    if (report->model != WEFT_COMPRESS_COMPONENTS)
+        weft_command_say(done->common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
+                         100 * (double)report->turned_frame_count / texels,
+                         100 * (double)report->second_start_count / texels);
 }
 
-static void say_target(const weft_compressed *done)
-{
-    if (done->options->target_error > 0)
-        weft_command_say(done->common, "relative RMSE above %g %% with the whole model: %ld of %ld texels",
-                         100 * done->options->target_error, done->report->missed_texel_count,
-                         done->report->texel_count);
-}
-
-static void say_certificate(const weft_common_options *common, const weft_certificate *certificate)
+static void report_certificate(const weft_common_options *common, const weft_certificate *certificate)
 {
     char line[WEFT_HOLD_OUT_LINE];
     weft_certificate_describe(certificate, line);
     weft_command_say(common, "  certificate: %s;", line);
     weft_certificate_row(certificate, 2, line);
-    weft_command_say(common, "    where %.3g is said, view and light at 30 degrees: %s", certificate->mean, line);
+    weft_command_say(common, "    for a predicted value of %.3g, view and light at 30 degrees: %s", certificate->mean,
+                     line);
     weft_certificate_describe_levels(certificate, line);
     if (line[0])
         weft_command_say(common, "    %s", line);
 }
 
 /* An event of what is in the metadata, too. */
-static weft_code say_hold_out(const weft_common_options *common, const weft_hold_out *result, weft_error *error)
+static weft_code report_hold_out(const weft_common_options *common, const weft_hold_out *result, weft_error *error)
 {
     char line[WEFT_HOLD_OUT_LINE];
     weft_hold_out_headline(result, line);
@@ -109,7 +84,7 @@ static weft_code say_hold_out(const weft_common_options *common, const weft_hold
     weft_hold_out_explain(result, line);
     weft_command_say(common, "  %s", line);
     if (result->has_certificate)
-        say_certificate(common, &result->certificate);
+        report_certificate(common, &result->certificate);
     if (!common->json)
         return WEFT_OK;
     json_t *object = weft_hold_out_to_json(result);
@@ -119,11 +94,9 @@ static weft_code say_hold_out(const weft_common_options *common, const weft_hold
     return code;
 }
 
-static void say_errors(const weft_common_options *common, const weft_material *material)
+/* Of lobes, level by level. */
+static void report_errors(const weft_common_options *common, const weft_material *material)
 {
-    char errors_of[64] = "";
-    if (material->components)
-        snprintf(errors_of, sizeof errors_of, ",\"errors_of\":\"%s\"", weft_material_errors_of(material));
     weft_command_say(common, "on the samples that were fitted:");
     weft_command_say(common, "level       texels   rel. RMSE  median rel.  80 %% rel.  PSNR dB  RMSE");
     for (int k = 0; k < material->level_count; k++) {
@@ -135,24 +108,20 @@ static void say_errors(const weft_common_options *common, const weft_material *m
         char event[320], psnr[WEFT_NUMBER_SIZE];
         snprintf(event, sizeof event,
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
-                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%s%s}",
+                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%s}",
                  k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
-                 error->relative_rmse, weft_command_number(error->psnr_db, psnr), errors_of);
+                 error->relative_rmse, weft_command_number(error->psnr_db, psnr));
         weft_command_event(common, event);
     }
 }
 
-static void say_components(const weft_common_options *common, const weft_compress_options *options,
-                           const weft_compress_report *report)
+static void report_components(const weft_common_options *common, const weft_compress_options *options,
+                              const weft_components_report *components)
 {
     static const char *const kind[] = {"the light", "the half vector", "the half vector, squared incidence"};
     char square[64] = "";
-    const weft_components_report *components = &report->components;
-    if (options->component_count == 0)
-        return;
     if (components->scattered && components->left_out_count < 2)
-        weft_command_say(common,
-                         "a photograph alone tells nothing of other directions: what is said of them is a guess");
+        weft_command_say(common, "one photograph shows nothing of other directions: these are guessed");
     else if (components->scattered)
         weft_command_say(
             common,
@@ -173,12 +142,10 @@ static void say_components(const weft_common_options *common, const weft_compres
         "PSNR %.2f dB",
         100 * components->fitted.relative_rmse, 100 * components->fitted.median_relative,
         100 * components->fitted.percentile80_relative, components->fitted.psnr_db);
-    weft_command_say(common, "the %s beside them, for players without components:",
-                     has_components_alone(options) ? "diffuse term" : "lobes");
 }
 
-/* The last code of a ceiling stands for all that is above: a sample in photons or counts, not reflectance, is cut. */
-static void say_ceiling(const weft_compressed *done)
+/* The last code of a ceiling stands for all that is above: samples in photons or counts are clipped. */
+static void report_ceiling(const weft_compressed *done)
 {
     const weft_components *components = done->material->components;
     if (!components)
@@ -190,13 +157,13 @@ static void say_ceiling(const weft_compressed *done)
     if (cut > 0)
         weft_command_say(
             done->common,
-            "components say no more than %.0f, and samples come near that or above it in %zu of %zu squares of "
-            "%d x %d texels: is a white diffuser 1 in them? else divide them, or fit lobes (--lobes 2)",
+            "values above %.0f were clipped in %zu of %zu squares of %d x %d texels: check that a white diffuser is 1, or "
+            "fit lobes (--lobes 2)",
             (double)weft_ceiling_of_code(UINT8_MAX), cut, count, WEFT_CEILING_SIDE, WEFT_CEILING_SIDE);
 }
 
 /* Whoever lays the cloth larger than the sample sees where it is repeated, unless it tiles. */
-static void say_seam(const weft_compressed *done)
+static void report_seam(const weft_compressed *done)
 {
     const weft_material_level *finest = &done->material->level[0];
     weft_seam seam;
@@ -217,7 +184,7 @@ static void say_seam(const weft_compressed *done)
     weft_command_event(done->common, event);
 }
 
-static void say_sizes(const weft_compressed *done)
+static void report_sizes(const weft_compressed *done)
 {
     const weft_compress_report *report = done->report;
     const weft_dataset_layout *layout = weft_dataset_get_layout(done->dataset);
@@ -245,15 +212,13 @@ static void print_speed(double frame_ms, char text[64])
         snprintf(text, 64, "%.1f ms a frame (%.0f frames/s)", frame_ms, 1000 / frame_ms);
 }
 
-weft_code weft_say_prediction(const weft_common_options *common, const weft_prediction *prediction, weft_error *error)
+weft_code weft_report_prediction(const weft_common_options *common, const weft_prediction *prediction,
+                                 weft_error *error)
 {
     char speed[64];
     print_speed(prediction->frame_ms, speed);
-    if (prediction->preset != WEFT_PRESET_NONE)
-        weft_command_say(common, "preset %s: %s (%s)", weft_preset_name(prediction->preset), prediction->model,
-                         prediction->arguments);
-    else
-        weft_command_say(common, "%s (%s)", prediction->model, prediction->arguments);
+    weft_command_say(common, "preset %s: %s (%s)", weft_preset_name(prediction->preset), prediction->model,
+                     prediction->arguments);
     weft_command_say(common, "  predicted: %.3f MB, relative RMSE %.1f %% on directions that are not fitted%s%s",
                      prediction->bytes * 1e-6, 100 * prediction->error, speed[0] ? ", " : "", speed);
     json_t *object = common->json ? weft_prediction_to_event(prediction) : NULL;
@@ -262,8 +227,46 @@ weft_code weft_say_prediction(const weft_common_options *common, const weft_pred
     return code;
 }
 
+static weft_code report_choice(const weft_common_options *common, json_t *event, weft_error *error)
+{
+    weft_code code = WEFT_OK;
+    if (common->json)
+        code = event ? weft_command_describe(common, "chosen", event, error) : weft_fail_memory(error, "event", 0);
+    json_decref(event);
+    return code;
+}
+
+weft_code weft_report_components_for_error(const weft_common_options *common, double wished,
+                                           const weft_component_count *chosen, weft_error *error)
+{
+    double left = chosen->held_out.material.all.relative_rmse;
+    const char *about = weft_hold_out_about(&chosen->held_out);
+    if (chosen->is_met)
+        weft_command_say(common, "%d components: the fewest whose relative RMSE %s is at most %g %%: %.1f %%",
+                         chosen->count, about, 100 * wished, 100 * left);
+    else
+        weft_command_say(common,
+                         "no number of components has a relative RMSE of at most %g %% %s: %d come nearest, %.1f %%",
+                         100 * wished, about, chosen->count, 100 * left);
+    return report_choice(common,
+                         json_pack("{s:i, s:f, s:f, s:b}", "components", chosen->count, "wished", wished,
+                                   "relative_rmse", left, "met", chosen->is_met),
+                         error);
+}
+
+weft_code weft_report_components_for_budget(const weft_common_options *common, uint64_t bytes,
+                                            const weft_component_count *chosen, weft_error *error)
+{
+    weft_command_say(common, "%d components: the most whose file has at most %g MB; predicted: %.3f MB", chosen->count,
+                     1e-6 * (double)bytes, 1e-6 * chosen->bytes);
+    return report_choice(common,
+                         json_pack("{s:i, s:I, s:f}", "components", chosen->count, "budget_bytes", (json_int_t)bytes,
+                                   "predicted_bytes", chosen->bytes),
+                         error);
+}
+
 /* The file is written: where it cannot be drawn, there is only nothing to say of that. */
-static void say_speed(const weft_compressed *done)
+static void report_speed(const weft_compressed *done)
 {
     const weft_prediction *prediction = done->prediction;
     weft_frame_timer *timer;
@@ -282,7 +285,7 @@ static void say_speed(const weft_compressed *done)
                          100 * (frame_ms / prediction->frame_ms - 1));
 }
 
-static void say_prediction(const weft_compressed *done)
+static void report_prediction(const weft_compressed *done)
 {
     const weft_prediction *prediction = done->prediction;
     const weft_hold_out *held_out = done->held_out;
@@ -291,25 +294,27 @@ static void say_prediction(const weft_compressed *done)
         return;
     weft_command_say(done->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6, bytes * 1e-6,
                      100 * (bytes / prediction->bytes - 1));
-    if (held_out->split_count > 0)
+    if (held_out->split_count > 0 && prediction->error > 0)
         weft_command_say(done->common, "predicted relative RMSE %.1f %% %s, is %.1f %% (%+.1f %%)",
                          100 * prediction->error, weft_hold_out_about(held_out),
                          100 * held_out->material.all.relative_rmse,
                          100 * (held_out->material.all.relative_rmse / prediction->error - 1));
-    say_speed(done);
+    report_speed(done);
 }
 
-weft_code weft_say_compressed(const weft_compressed *done, weft_error *error)
+weft_code weft_report_compressed(const weft_compressed *done, weft_error *error)
 {
-    say_model(done);
-    say_target(done);
+    report_model(done);
+    report_counts(done);
     if (done->held_out->split_count > 0)
-        WEFT_TRY(say_hold_out(done->common, done->held_out, error));
-    say_components(done->common, done->options, done->report);
-    say_errors(done->common, done->material);
-    say_ceiling(done);
-    say_seam(done);
-    say_sizes(done);
-    say_prediction(done);
+        WEFT_TRY(report_hold_out(done->common, done->held_out, error));
+    if (done->report->model == WEFT_COMPRESS_COMPONENTS)
+        report_components(done->common, done->options, &done->report->components);
+    else
+        report_errors(done->common, done->material);
+    report_ceiling(done);
+    report_seam(done);
+    report_sizes(done);
+    report_prediction(done);
     return WEFT_OK;
 }
