@@ -147,23 +147,24 @@ static void put_table(weft_page *page, const weft_error_budget *budget, int coun
     for (int i = 0; i < count; i++)
         put_row(page, &budget[i]);
     fputs("</table>\n", page->html);
-    fputs("<p class=\"note\">Parts and their sum are squares; their intervals show when pointed at, and stand in <a "
-          "href=\"sources.csv\">sources.csv</a>. <i>Changed</i> is the RMS of what a stage changed, whether that made "
-          "the error larger or smaller. Intervals are for other queries of the same photographs (bootstrap). The noise "
-          "of the truth is its standard error; it is not in the parts, which are products of two answers of the cloth "
-          "by paths of their own.</p>\n",
-          page->html);
+    fputs(
+        "<p class=\"note\">Parts and their sum are squares. Point at one to see its interval, or open <a "
+        "href=\"sources.csv\">sources.csv</a>. <i>Changed</i> is the RMS change by a stage, whether it made the error "
+        "larger or smaller. Intervals hold for other queries of the same photographs (bootstrap). The noise of the "
+        "truth is its standard error. It is not part of the sum: each part multiplies two independent renderings of "
+        "the cloth.</p>\n",
+        page->html);
 }
 
 static void put_summary(weft_page *page, const weft_error_budget *budget, const weft_error_budget_request *request)
 {
     fprintf(
         page->html,
-        "<p>How far a material is from the virtual cloth that it was made from, and what each stage added to that. "
+        "<p>The error of a material against the virtual cloth that it was made from, and the part of each stage. "
         "Each cloth was photographed by the virtual rig (%d photographs), registered to %d \u00d7 %d texels, fitted "
         "by %d components and stored. Then %d places, lights and views were drawn at random, evenly in solid angle up "
-        "to %.0f\u00b0 from the normal. The number beside a stack is the relative RMSE; the stack is its "
-        "square.</p>\n",
+        "to %.0f\u00b0 from the normal. The number beside a bar is the relative RMSE; the length of the bar is "
+        "its square.</p>\n",
         budget->photograph_count, budget->size, budget->size, budget->component_count, request->queries.count,
         weft_deg_of_rad(budget->span.theta_rad));
 }
@@ -172,13 +173,14 @@ static void put_explanation(weft_page *page)
 {
     fputs(
         "<ul>\n<li><b>directions</b>: the exact samples of the cloth in the photographed directions, "
-        "interpolated</li>\n<li><b>registration</b>: the samples as photographs give them (lens, sensor, lamp, "
-        "poses), interpolated alike</li>\n<li><b>model</b>: the components that were fitted to these, with "
-        "coefficients "
-        "of 15 bits</li>\n<li><b>storage</b>: the same as the file says them, with 8 bits</li>\n</ul>\n"
-        "<p class=\"note\">A part is the squared error after its stage, less that before it. So parts add up, but are "
-        "no independent errors: one is below 0, and drawn to the left, where its stage makes up for an error before "
-        "it.</p>\n",
+        "interpolated</li>\n<li><b>registration</b>: the registered samples (lens, sensor, lamp, poses), interpolated "
+        "the same "
+        "way</li>\n<li><b>model</b>: the components that were fitted to these samples, with 15-bit "
+        "coefficients</li>\n<li><b>storage</b>: the same components as the file stores them, in 8 bits</li>\n</ul>\n"
+        "<p class=\"note\">A part is the squared error after its stage minus the squared error before it. Parts add "
+        "up, "
+        "but they are not independent: a part is negative, and drawn to the left, where its stage corrects an earlier "
+        "error.</p>\n",
         page->html);
 }
 

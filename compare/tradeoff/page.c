@@ -18,15 +18,15 @@ static void put_texels(weft_page *page, const weft_tradeoff *tradeoff)
 {
     bool is_spread = tradeoff->measured_texels != tradeoff->neighbours || tradeoff->lobe_texels != tradeoff->neighbours;
     if (!is_spread) {
-        fprintf(page->html, "<p class=\"note\">Errors are those of %ld texels in the middle", tradeoff->neighbours);
+        fprintf(page->html, "<p class=\"note\">Errors are measured on %ld texels in the middle", tradeoff->neighbours);
         return;
     }
     fprintf(page->html,
-            "<p class=\"note\">Errors are those of %ld texels that lie spread, of lobes of %ld, as in the file of a "
-            "material; pictures, and errors of cloth, are those of %ld texels in the middle",
+            "<p class=\"note\">Errors are measured on %ld texels scattered over the dataset (lobes on %ld), as in "
+            "the file of a material. Pictures, and the errors of analytic cloth, are of %ld texels in the middle",
             tradeoff->measured_texels, tradeoff->lobe_texels, tradeoff->neighbours);
     if (tradeoff->split_count > 1)
-        fprintf(page->html, "; others are held out %d times", tradeoff->split_count);
+        fprintf(page->html, ". Images were held out %d times, other ones each time", tradeoff->split_count);
 }
 
 /* ---- The choice ---- */
@@ -78,15 +78,15 @@ static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
     weft_tradeoff_print_held(tradeoff, held, sizeof held);
     fprintf(page->html,
             "<p>%d models of %d \u00d7 %d texels and %d photographs. <b>Error</b> is the relative RMSE on photographs "
-            "that the model was not fitted to: %s were held out, the same for all. What each model says of those that "
-            "it was fitted to stands beside it.</p>\n",
+            "that the model was not fitted to: %s were held out, the same for all models. The table also "
+            "has the error on the photographs that the model was fitted to.</p>\n",
             tradeoff->row_count, tradeoff->width, tradeoff->height, tradeoff->image_count, held);
     put_choices(page, tradeoff);
     put_texels(page, tradeoff);
     if (tradeoff->fitted_texels < tradeoff->texels)
-        fprintf(page->html, "; bytes and times of fits are those of %ld texels in proportion; frames show these",
+        fprintf(page->html, ". Bytes and times of fits are scaled up from %ld texels, which the frames show",
                 tradeoff->fitted_texels);
-    fprintf(page->html, ". Times are those of this machine, with %d threads, while this page was made in %.0f s. ",
+    fprintf(page->html, ". Times were measured on this machine with %d threads. This page took %.0f s. ",
             tradeoff->threads, tradeoff->seconds);
     if (tradeoff->why_not_drawn[0])
         fputs("There are no times of frames: ", page->html);
@@ -171,10 +171,11 @@ static void put_charts(weft_page *page, const weft_tradeoff *tradeoff)
     fputs("<div class=\"plots\">\n", page->html);
     for (int which = 0; which < 3; which++)
         put_chart(page, tradeoff, which);
-    fputs("</div>\n<p class=\"note\">Both axes are logarithmic; lower and further left is better. The staircase joins "
-          "the models of <code>weft compress</code> that no other of them beats in bytes and error; rings mark the "
-          "presets. A click on a point leads to its row.</p>\n",
-          page->html);
+    fputs(
+        "</div>\n<p class=\"note\">Both axes are logarithmic; lower and further left is better. The staircase joins "
+        "the models of <code>weft compress</code> that no other of them beats in both bytes and error. Rings mark the "
+        "presets. Click on a point to see its row.</p>\n",
+        page->html);
 }
 
 /* ---- Table ---- */
@@ -242,21 +243,19 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
               "photographs|:weft compress");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
-    fputs("</table>\n"
-          "<p class=\"note\">A model without options of <code>weft compress</code> shows what would be saved: fewer "
-          "photographs are a shorter capture. "
-          "Evaluations: BRDFs at places and directions drawn at random, one thread. Reads of textures and bytes of all "
-          "texels that the hardware interpolates, for a pixel under one light; through heights as many as the longest "
-          "sight line takes. Grazing: view or light 52.5\u00b0 or more "
-          "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
-          "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
-          "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
-          "of an interval that held so many of these samples, in parts of the mean sample. Flicker: while a light "
-          "sweeps "
-          "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
-          "BARD, "
-          "which has no frames.</p>\n",
-          page->html);
+    fputs(
+        "</table>\n"
+        "<p class=\"note\">A row without options of <code>weft compress</code> is for comparison: fewer photographs "
+        "stand for a shorter capture. Evaluations: BRDFs at random places and directions, on one thread. Reads and "
+        "bytes: of textures, for a pixel under one light, with all texels that the hardware interpolates; through "
+        "heights, along the longest sight line. Grazing: view or light is 52.5\u00b0 or more from the normal. "
+        "Highlights: the brightest twentieth of the samples of each texel. Shadows: the darkest fifth; their error is "
+        "relative to the little light there is. These errors, and PSNR, SSIM and FLIP of pictures, are of photographs "
+        "that were not fitted; each texel is a pixel. 95 % interval: the mean width of the interval that holds 95 % of "
+        "these samples, relative to the mean sample. Flicker: while a light sweeps across, the brightness of a place "
+        "moves so much farther than up and down once; 0 is smooth. BARD has no frames, because the player does not "
+        "draw it.</p>\n",
+        page->html);
 }
 
 /* ---- Pictures ---- */
@@ -290,15 +289,16 @@ static void put_picture_table(weft_page *page, const weft_tradeoff *tradeoff)
     int pictures = most_pictures(tradeoff);
     if (pictures == 0)
         return;
-    fputs("<h2 id=\"looks\">How alike pictures look</h2>\n<table class=\"long\">\n", page->html);
+    fputs("<h2 id=\"looks\">How similar pictures look</h2>\n<table class=\"long\">\n", page->html);
     weft_page_columns(page, "|:model|PSNR dB|PSNR, grazing|PSNR, highlights|PSNR, shadows|SSIM|SSIM, grazing|"
                             "SSIM, highlights|SSIM, shadows|FLIP|FLIP, grazing|FLIP, highlights|FLIP, shadows");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_qualities(page, &tradeoff->row[i], i + 1);
     fprintf(page->html,
-            "</table>\n<p class=\"note\">Of up to %d pictures that were not fitted: of all pixels, and of those that "
-            "graze, shine or lie in shadow, told apart as above. What SSIM and FLIP see about a pixel may lie beyond. "
-            "SSIM: 1 is equal; FLIP: 0 is equal.</p>\n",
+            "</table>\n<p class=\"note\">Up to %d held-out photographs beside their predictions: all pixels, and those "
+            "of grazing "
+            "directions, highlights and shadows as above. The windows of SSIM and FLIP may reach beyond these pixels. "
+            "Equal pictures have SSIM 1 and FLIP 0.</p>\n",
             pictures);
 }
 
@@ -320,9 +320,9 @@ static weft_code put_pictures_of(weft_page *page, const weft_tradeoff_row *row, 
 static weft_code put_pictures(weft_page *page, const weft_tradeoff *tradeoff, weft_error *error)
 {
     fputs(
-        "<h2 id=\"pictures\">Under the worst light</h2>\n<p class=\"note\">Of the photographs that were held out, the "
-        "one that the model misses most, and what it makes of it. A click enlarges both, to be wiped one against the "
-        "other.</p>\n<div class=\"pairs\">\n",
+        "<h2 id=\"pictures\">Under the worst light</h2>\n<p class=\"note\">For each model, the "
+        "held-out photograph with the largest error, and its prediction. Click to enlarge both and to wipe one against "
+        "the other.</p>\n<div class=\"pairs\">\n",
         page->html);
     for (int i = 0; i < tradeoff->row_count; i++) {
         if (tradeoff->row[i].measured.picture_count > 0)

@@ -160,7 +160,7 @@ static weft_error_summary compare_weave(const char *weave, bool fit, double tile
     weft_error_summary result = comparison.model[1].texture.all;
     char *page = read_page("compare-report/index.html");
     assert_int_equal(comparison.weave_on_yarns, on_yarns);
-    assert_int_equal(strstr(page, "laid as the fit found its tiles") != NULL, on_yarns);
+    assert_int_equal(strstr(page, "placed by the fit") != NULL, on_yarns);
     free(page);
     const weft_weave_layout *layout = &comparison.weave_layout;
     print_message("%.3f x %.3f tiles, corner at %.3f, %.3f: relative RMSE %.4f\n", layout->tiles_u, layout->tiles_v,

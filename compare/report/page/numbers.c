@@ -17,7 +17,7 @@ static void print_held_out(weft_page *page, const weft_hold_out *held_out)
     fputs(".</b> As <code>weft compress</code> ", page->html);
     weft_hold_out_explain(held_out, line);
     weft_page_text(page, line);
-    fputs(". All other numbers of this page are of samples that were fitted.</p>\n", page->html);
+    fputs(". All other numbers on this page are of fitted samples.</p>\n", page->html);
 }
 
 /* A drape shows many more views and lights than a few photographs have: what is drawn of them there is no measure. */
@@ -49,8 +49,8 @@ static void explain_tiles(weft_page *page, const weft_comparison *comparison)
               "they lie side by side, and below 25 dB the difference is plain. ",
               page->html);
     if (comparison->has_held_out)
-        fputs("What the photographs interpolated leave is what lies between their directions: a material that leaves "
-              "no more is a good one.",
+        fputs("The error of the interpolated photographs shows how much lies between their directions. A good "
+              "material has no larger error.",
               page->html);
     fputs("</p>\n", page->html);
 }
@@ -85,12 +85,11 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
 /* What the columns of errors mean. */
 static void explain_error(weft_page *page)
 {
-    fprintf(
-        page->html,
-        "Relative RMSE: \u221a(\u03a3 (p \u2212 s)\u00b2 / \u03a3 s\u00b2) over samples s and predictions p. "
-        "Median relative and 80th percentile: of |p \u2212 s| / s, without the dim samples, which are at most %g of "
-        "the largest.",
-        weft_dim_share);
+    fprintf(page->html,
+            "Relative RMSE: \u221a(\u03a3 (p \u2212 s)\u00b2 / \u03a3 s\u00b2) over samples s and predictions p. "
+            "Median relative and 80th percentile: of |p \u2212 s| / s, without dim samples of at most %g of "
+            "the largest.",
+            weft_dim_share);
 }
 
 static void print_weave(weft_page *page, const weft_comparison *comparison)
@@ -110,7 +109,7 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
     fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material", layout->tiles_u, layout->tiles_v);
     if (comparison->weave_on_yarns)
         fprintf(page->html,
-                ", laid as the fit found its tiles (a tile begins %.2f tiles to the right of the lower left "
+                ", placed by the fit (a tile begins %.2f tiles to the right of the lower left "
                 "corner and %.2f above it)",
                 layout->corner_u, layout->corner_v);
     fputs(".", page->html);
@@ -118,8 +117,8 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
     if (comparison->fit.image_count > 0)
         fprintf(page->html,
                 " The relative error of the mean BRDF that the fit saw was %.2f %% (median) and %.2f %% (80th "
-                "percentile) before the fit, and is %.2f %% and %.2f %% after it; the table has that of the whole "
-                "material. <a href=\"fitted.wv\">fitted.wv</a> is the fitted weave.",
+                "percentile) before the fit, and is %.2f %% and %.2f %% after it. The table has the error over the "
+                "whole material. <a href=\"fitted.wv\">fitted.wv</a> is the fitted weave.",
                 100 * before->median_relative, 100 * before->percentile80_relative, 100 * after->median_relative,
                 100 * after->percentile80_relative);
 }
@@ -259,9 +258,10 @@ static void print_certificate(weft_page *page, const weft_comparison *comparison
     weft_page_text(page, line);
     fprintf(
         page->html,
-        ". How many samples of this dataset lie in theirs; where they were fitted, more do than it promises. Widths "
-        "are means, in parts of the mean sample; %.1f %% if all intervals were alike and held as many. On the right: "
-        "half the width where %.3g is said, under light at 30\u00b0, and the shares of its parts.",
+        ". The table counts the samples of this dataset inside their intervals; of fitted samples more lie inside than "
+        "predicted. Widths are means relative to the mean sample; one width for all samples would have to be %.1f %%. "
+        "On "
+        "the right: half the width for a predicted value of %.3g under light at 30\u00b0, and the shares of its parts.",
         100 * coverage->even_width, certificate->mean);
     weft_certificate_describe_levels(certificate, line);
     if (line[0])
@@ -270,8 +270,8 @@ static void print_certificate(weft_page *page, const weft_comparison *comparison
     fputs(line[0] ? ".</p>\n<table>" : "</p>\n<table>", page->html);
     weft_page_columns(page, "|values|in their interval|width|:its parts");
     print_covered(page, "all", &coverage->all, "");
-    print_covered(page, "darkest fifth that is said", &coverage->dark, "");
-    print_covered(page, "brightest fifth that is said", &coverage->bright, "");
+    print_covered(page, "darkest fifth of the predictions", &coverage->dark, "");
+    print_covered(page, "brightest fifth of the predictions", &coverage->bright, "");
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
         snprintf(name, sizeof name, "view about %d\u00b0", 15 * ring);
         weft_certificate_row(certificate, ring, line);

@@ -61,9 +61,9 @@ static void put_scale(weft_page *page)
 
 static void explain_pictures(weft_page *page)
 {
-    fputs("<p class=\"note\">Reflectance in linear light, brightened so that the 99th percentile of the photograph "
-          "comes to 0.9, shown "
-          "as sRGB. Difference: mean of the channels under the same exposure, red where the prediction is brighter, "
+    fputs("<p class=\"note\">Reflectance in linear light, scaled so that the 99th percentile of the photograph is 0.9, "
+          "shown as sRGB. Difference: mean of the channels under the same exposure, red where the prediction is "
+          "brighter, "
           "blue where it "
           "is darker. Grey: masked.</p>\n",
           page->html);

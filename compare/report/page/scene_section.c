@@ -70,7 +70,7 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     fprintf(page->html, "<p class=\"note\">Raw: the dataset, interpolated%s. Compressed: the material. ",
             scenes->has_heights ? " through its heights" : "");
     if (scenes->has[WEFT_MODE_ANALYTIC])
-        fputs("Analytic: the cloth as its model has it, without noise. ", page->html);
+        fputs("Analytic: the model of the cloth, without noise. ", page->html);
     if (scenes->has[WEFT_SCENE_BARD])
         fputs("BARD: predicted from the photographs under one light. ", page->html);
     if (scenes->near_lights)
@@ -80,7 +80,7 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     if (scenes->skipped_levels > 0)
         fprintf(page->html, "The dataset did not fit into graphics memory: its finest %d levels are left out. ",
                 scenes->skipped_levels);
-    fputs("Errors are those of the lit pixels of the mesh. Differences: see <a href=\"#texels\">Texels</a>.</p>\n",
+    fputs("Errors are over the lit pixels of the mesh. Differences: see <a href=\"#texels\">Texels</a>.</p>\n",
           page->html);
     for (int i = 0; i < WEFT_SCENE_COUNT; i++)
         WEFT_TRY(put_scene(page, i, scenes, error));

@@ -110,7 +110,7 @@ weft_code weft_page_truth(weft_page *page, const weft_traced_truth *truth, weft_
         return WEFT_OK;
     fputs("<h2>Truth</h2>\n", page->html);
     if (!truth->drawn) {
-        fputs("<p>There is nothing beside the truth: ", page->html);
+        fputs("<p>There is no picture beside the truth: ", page->html);
         weft_page_text(page, truth->why_not);
         fputs("</p>\n", page->html);
         return WEFT_OK;
@@ -121,8 +121,8 @@ weft_code weft_page_truth(weft_page *page, const weft_traced_truth *truth, weft_
         page->html,
         " laid over it, %d tiles across %.3g mm, %d triangles (%d of %d cells across a tile), traced with %d paths "
         "a pixel and %d bounces. All light: the player casts the shadows of the mesh. Light of the cloth near by: "
-        "what lies beyond %.2g mm neither shades nor lights anything, and the player casts no shadows; that is what "
-        "a material knows of. Errors are those of the lit pixels of the mesh; those of blocks are of means over %d "
+        "cloth farther than %.2g mm away neither shades nor lights anything, and the player casts no shadows, as in "
+        "a material. Errors are over the lit pixels of the mesh; errors of blocks compare means over %d "
         "x %d pixels.%s</p>\n",
         WEFT_TRUTH_REPEAT, truth->cloth_mm, truth->triangles, truth->cells, truth->finest_cells, truth->paths,
         truth->bounces, truth->reach_mm, WEFT_TRUTH_BLOCK, WEFT_TRUTH_BLOCK,
