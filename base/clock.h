@@ -1,7 +1,8 @@
-/* What a clock says. */
+/* Clocks of the system, and a clock that tests replace. */
 #ifndef WEFT_BASE_CLOCK_H
 #define WEFT_BASE_CLOCK_H
 
+#include <stdbool.h>
 #include <time.h>
 
 /* Seconds on a clock of the system: CLOCK_MONOTONIC for the time that passes, CLOCK_THREAD_CPUTIME_ID or
@@ -19,5 +20,16 @@ static inline double weft_now_s(void)
 {
     return weft_clock_seconds(CLOCK_MONOTONIC);
 }
+
+/* The time, and waiting, for whatever must be tested without either. */
+typedef struct weft_clock {
+    void *context;
+    double (*now_s)(void *context);
+    /* Waits until there is something to read from `descriptor`, at most `seconds`. Returns whether there is. */
+    bool (*wait_for_input)(void *context, int descriptor, double seconds);
+} weft_clock;
+
+/* weft_now_s and poll(). */
+extern const weft_clock weft_system_clock;
 
 #endif

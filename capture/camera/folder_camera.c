@@ -1,12 +1,10 @@
 #include "capture/camera/folder_camera.h"
 
-#include "base/clock.h"
 #include "base/picture/exif.h"
 
 #include <errno.h>
 #include <fnmatch.h>
 #include <limits.h>
-#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +16,7 @@ static const char name[] = "watched folder";
 /* Files come whole, but some programs write them in more than one go: closed is not yet complete. */
 struct weft_folder_camera {
     weft_folder_camera_settings settings;
+    weft_clock clock;
     int watch;
     char original[PATH_MAX]; /* of the last frame */
 };
@@ -86,14 +85,15 @@ static bool stop_asked(const weft_folder_camera *camera)
 /* Waits in short steps, to hear a stop. */
 static weft_code wait_for_file(taking *t, weft_error *error)
 {
-    enum { STEP_MS = 100 };
+    const double step_s = 0.1;
     const weft_folder_camera_settings *settings = &t->camera->settings;
-    double end_s = weft_now_s() + settings->timeout_s;
-    while (weft_now_s() < end_s) {
-        struct pollfd ready = {t->camera->watch, POLLIN, 0};
+    const weft_clock *clock = &t->camera->clock;
+    double end_s = clock->now_s(clock->context) + settings->timeout_s;
+    while (clock->now_s(clock->context) < end_s) {
         if (stop_asked(t->camera))
             return weft_fail(error, WEFT_SYSTEM, "%s: stopped while waiting for a photograph", name);
-        if (poll(&ready, 1, STEP_MS) > 0 && read_events(t->camera->watch, try_file, t))
+        if (clock->wait_for_input(clock->context, t->camera->watch, step_s) &&
+            read_events(t->camera->watch, try_file, t))
             return WEFT_OK;
     }
     if (t->code == WEFT_OK)
@@ -133,6 +133,7 @@ weft_code weft_folder_camera_create(const weft_folder_camera_settings *settings,
     if (!camera)
         return weft_fail_memory(error, name, sizeof *camera);
     camera->settings = *settings;
+    camera->clock = settings->clock ? *settings->clock : weft_system_clock;
     camera->watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     if (camera->watch < 0 ||
         inotify_add_watch(camera->watch, settings->folder, IN_CLOSE_WRITE | IN_MOVED_TO | IN_ONLYDIR) < 0) {

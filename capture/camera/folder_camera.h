@@ -2,6 +2,7 @@
 #ifndef WEFT_CAPTURE_CAMERA_FOLDER_CAMERA_H
 #define WEFT_CAPTURE_CAMERA_FOLDER_CAMERA_H
 
+#include "base/clock.h"
 #include "capture/camera/frame.h"
 #include "capture/rig.h"
 
@@ -11,6 +12,7 @@ typedef struct weft_folder_camera_settings {
     weft_frame_format format;
     weft_shutter shutter;
     const volatile sig_atomic_t *stop; /* borrowed; NULL: never */
+    const weft_clock *clock;           /* copied; NULL: weft_system_clock */
 } weft_folder_camera_settings;
 
 typedef struct weft_folder_camera weft_folder_camera;

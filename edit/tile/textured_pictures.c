@@ -1,6 +1,7 @@
 #include "edit/tile/textured_pictures.h"
 
 #include "btf/dataset/read_blocks.h"
+#include "btf/direction/direction.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -59,10 +60,13 @@ static void add_textures(void *context, const weft_walk_block *block)
         add_image(&choice->image[i], block, (size_t)i, (size_t)choice->image_count);
 }
 
+/* From the normal, of light and view of an image that is used. */
+static const double steepest_deg = 65;
+
 /* Covariance of neighbours relative to the squared mean; negative for an image that is not to be used. */
 static double texture_of(const weft_dataset_layout *layout, const texture_sums *sums, int image)
 {
-    const double least_cosine = 0.42;
+    const double least_cosine = cos(weft_rad_of_deg(steepest_deg));
     double texels = (double)layout->width * layout->height,
            mean = sums->sum / (double)(sums->count > 0 ? sums->count : 1);
     bool is_steep =
@@ -107,8 +111,8 @@ static weft_code choose_images(weft_dataset *dataset, const weft_progress *progr
         choose(layout, &choice, most, pictures);
     free(choice.image);
     if (code == WEFT_OK && pictures->count == 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has no texture in any image less than 65 degrees steep",
-                         weft_dataset_path(dataset));
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has no texture in any image less than %g degrees steep",
+                         weft_dataset_path(dataset), steepest_deg);
     return code;
 }
 

@@ -5,12 +5,11 @@
 #include "tests/support/scratch_folder.h"
 
 #include <math.h>
-#include <pthread.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { WIDTH = 40, HEIGHT = 30, BIN = 2, VALUES = WIDTH * HEIGHT * 3 };
@@ -52,27 +51,33 @@ static void assert_values(const uint16_t *samples, double tolerance)
     }
 }
 
-static void rest_ms(long ms)
-{
-    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000};
-    nanosleep(&pause, NULL);
-}
-
 /* ---- A folder ---- */
 
-/* What the other program does once the shutter is released. */
+/* Step `step` of what the other program does once the shutter is released; returns whether there are more. */
+typedef bool program_step(int step);
+
+/* The other program, and the time: it goes on by a step whenever the camera waits, and the clock then says that all of
+ * the wait is over. */
 typedef struct other_program {
-    void (*work)(void);
-    pthread_t thread;
-    bool running;
+    program_step *work;
+    int step; /* -1: it has done all, or was not asked yet */
     int releases;
-    double exposure_s;
+    double exposure_s, now_s;
 } other_program;
 
-static void *run_program(void *context)
+static double now_of_program(void *context)
 {
-    ((other_program *)context)->work();
-    return NULL;
+    return ((other_program *)context)->now_s;
+}
+
+static bool wait_for_program(void *context, int descriptor, double seconds)
+{
+    other_program *program = context;
+    struct pollfd ready = {descriptor, POLLIN, 0};
+    program->now_s += seconds;
+    if (program->step >= 0)
+        program->step = program->work(program->step) ? program->step + 1 : -1;
+    return poll(&ready, 1, 0) > 0;
 }
 
 static weft_code release(void *context, double exposure_s, weft_error *error)
@@ -81,20 +86,22 @@ static weft_code release(void *context, double exposure_s, weft_error *error)
     (void)error;
     program->releases++;
     program->exposure_s = exposure_s;
-    program->running = true;
-    return pthread_create(&program->thread, NULL, run_program, program) == 0 ? WEFT_OK : WEFT_SYSTEM;
+    program->step = 0;
+    return WEFT_OK;
 }
 
-static weft_code take(void (*work)(void), double fixed_s, double timeout_s, uint16_t *samples, double *read_back_s,
+static weft_code take(program_step *work, double fixed_s, double timeout_s, uint16_t *samples, double *read_back_s,
                       char *original, weft_error *error)
 {
-    other_program program = {.work = work};
+    other_program program = {.work = work, .step = -1};
+    const weft_clock clock = {&program, now_of_program, wait_for_program};
     const weft_folder_camera_settings settings = {
         .folder = "incoming",
         .pattern = "*.tif",
         .timeout_s = timeout_s,
         .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT, .exposure_s = fixed_s},
-        .shutter = {&program, release}};
+        .shutter = {&program, release},
+        .clock = &clock};
     weft_folder_camera *camera;
     assert_int_equal(weft_folder_camera_create(&settings, &camera, NULL), WEFT_OK);
     weft_rig_camera rig = weft_folder_camera_for_rig(camera);
@@ -102,8 +109,6 @@ static weft_code take(void (*work)(void), double fixed_s, double timeout_s, uint
     write_picture("before.tif", WIDTH * BIN, HEIGHT * BIN, 7);
     assert_int_equal(rename("before.tif", "incoming/before.tif"), 0);
     weft_code code = rig.expose(rig.device, 0, 0.25, samples, read_back_s, error);
-    if (program.running)
-        pthread_join(program.thread, NULL);
     assert_int_equal(program.releases, 1);
     assert_float_equal(program.exposure_s, 0.25, 0);
     if (original)
@@ -112,9 +117,11 @@ static weft_code take(void (*work)(void), double fixed_s, double timeout_s, uint
     return code;
 }
 
-static void drop_whole(void)
+static bool drop_whole(int step)
 {
+    (void)step;
     write_picture("incoming/IMG_1.TIF", WIDTH * BIN, HEIGHT * BIN, 0.125);
+    return false;
 }
 
 static void the_next_file_is_the_frame_and_says_its_exposure(void **state)
@@ -133,21 +140,23 @@ static void the_next_file_is_the_frame_and_says_its_exposure(void **state)
 }
 
 /* In pieces, closed in between, with other files about: as programs do over a slow cable. */
-static void drop_in_pieces(void)
+static bool drop_in_pieces(int step)
 {
+    enum { PIECES = 4 };
     size_t size;
-    write_picture("whole.tif", WIDTH * BIN, HEIGHT * BIN, 0.125);
-    unsigned char *bytes = scratch_load("whole.tif", &size);
-    scratch_store("incoming/IMG_2.xmp", "metadata", 8);
-    scratch_store("incoming/.hidden.tif", "x", 1);
-    for (int piece = 1; piece <= 4; piece++) {
-        FILE *file = fopen("incoming/IMG_2.tif", piece == 1 ? "wb" : "ab");
-        size_t from = size * (size_t)(piece - 1) / 4, to = size * (size_t)piece / 4;
-        fwrite(bytes + from, 1, to - from, file);
-        fclose(file);
-        rest_ms(60);
+    if (step == 0) {
+        write_picture("whole.tif", WIDTH * BIN, HEIGHT * BIN, 0.125);
+        scratch_store("incoming/IMG_2.xmp", "metadata", 8);
+        scratch_store("incoming/.hidden.tif", "x", 1);
     }
+    unsigned char *bytes = scratch_load("whole.tif", &size);
+    size_t from = size * (size_t)step / PIECES, to = size * (size_t)(step + 1) / PIECES;
+    FILE *file = fopen("incoming/IMG_2.tif", step == 0 ? "wb" : "ab");
+    assert_non_null(file);
+    fwrite(bytes + from, 1, to - from, file);
+    fclose(file);
     free(bytes);
+    return step + 1 < PIECES;
 }
 
 static void a_file_is_waited_for_until_it_is_whole(void **state)
@@ -163,28 +172,36 @@ static void a_file_is_waited_for_until_it_is_whole(void **state)
     assert_string_equal(original, "incoming/IMG_2.tif");
 }
 
-static void move_in(void)
+static bool move_in(int step)
 {
+    (void)step;
     write_picture("elsewhere.tif", WIDTH * BIN, HEIGHT * BIN, 0);
     rename("elsewhere.tif", "incoming/IMG_3.tif");
+    return false;
 }
 
-static void drop_nothing(void)
+static bool drop_nothing(int step)
 {
+    (void)step;
+    return false;
 }
 
-static void drop_half(void)
+static bool drop_half(int step)
 {
+    (void)step;
     size_t size;
     write_picture("whole.tif", WIDTH * BIN, HEIGHT * BIN, 0.125);
     unsigned char *bytes = scratch_load("whole.tif", &size);
     scratch_store("incoming/half.tif", bytes, size / 2);
     free(bytes);
+    return false;
 }
 
-static void drop_other_size(void)
+static bool drop_other_size(int step)
 {
+    (void)step;
     write_picture("incoming/other.tif", WIDTH, HEIGHT, 0.125);
+    return false;
 }
 
 static void what_cannot_be_a_frame_is_named_when_the_time_is_up(void **state)
