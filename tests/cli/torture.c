@@ -241,7 +241,7 @@ static void compare_with_reference(tally *t)
         weft_session_check(&session, NULL, &faults, NULL) != WEFT_OK)
         fail("the session cannot be opened");
     for (int i = 0; i < faults.count; i++)
-        fprintf(stderr, "%s\n", faults.fault[i].text);
+        fprintf(stderr, "%s\n", faults.problem[i].text);
     t->faults = faults.count + shot_count - journal_lines();
     for (int shot = 0; shot < shot_count && faults.count == 0; shot++) {
         double own = difference(&session, shot, &reference, shot);
