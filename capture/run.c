@@ -8,7 +8,6 @@
 #include "capture/sensor_frames.h"
 #include "capture/shooting.h"
 #include "capture/shot_order.h"
-#include "capture/status/status_overview.h"
 #include "capture/status/status_page.h"
 
 #include <limits.h>

@@ -1,8 +1,5 @@
 #include "capture/axes/path.h"
 
-#include "capture/axes/tour.h"
-#include "capture/axes/tree.h"
-
 #include <math.h>
 #include <stdlib.h>
 

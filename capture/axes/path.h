@@ -2,6 +2,7 @@
 #ifndef WEFT_CAPTURE_AXES_PATH_H
 #define WEFT_CAPTURE_AXES_PATH_H
 
+#include "base/status.h"
 #include "capture/axes/axes.h"
 
 typedef struct weft_axes_path {
@@ -27,5 +28,23 @@ enum { WEFT_AXES_BOUND_MAX = 20000 };
  * usual step of each axis are tried, and the better bound counts. */
 weft_code weft_axes_order(const weft_axes *axes, const weft_axis_positions *pose, int count, int *number,
                           weft_axes_path *path, weft_error *error);
+
+/* A short way through places whose distances differ with the direction: the travelling salesman who need not return. */
+
+/* Cost of going from one place to another; from -1: of beginning at the other. */
+typedef double weft_tour_cost(const void *context, int from, int to);
+
+enum { WEFT_TOUR_MAX = 3000 };
+
+/* Sorts `place` [count], which holds 0 .. count - 1, by nearest neighbours and then by moving and turning round
+ * segments until no such change is shorter. More than WEFT_TOUR_MAX places stay as they are. Deterministic. Errors:
+ * WEFT_SYSTEM for memory. */
+weft_code weft_tour(int count, weft_tour_cost *cost, const void *context, int *place, weft_error *error);
+
+/* ---- How soon no order of poses can be through: the least spanning tree (Prim 1957). See capture/axes/path.h ---- */
+
+/* Of pose[number[0 .. count - 1]]. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_tree_bound(const weft_axes *axes, const weft_axis_positions *pose, int count, const int *number,
+                          double *seconds, weft_error *error);
 
 #endif

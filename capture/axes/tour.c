@@ -1,4 +1,4 @@
-#include "capture/axes/tour.h"
+#include "capture/axes/path.h"
 
 #include <math.h>
 #include <stdbool.h>

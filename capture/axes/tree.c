@@ -1,4 +1,4 @@
-#include "capture/axes/tree.h"
+#include "capture/axes/path.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #ifndef WEFT_CAPTURE_PREFLIGHT_MEASURE_H
 #define WEFT_CAPTURE_PREFLIGHT_MEASURE_H
 
+#include "btf/session/session.h"
 #include "capture/exposure.h"
 #include "capture/preflight/preflight.h"
 #include "registration/pose/prediction.h"
@@ -26,5 +27,22 @@ weft_code weft_preflight_measure_dark(const weft_session *session, weft_angles v
 /* Keeps `value` where nothing or something better is known. Pure. */
 void weft_preflight_note(weft_preflight_check *check, weft_preflight_kind kind, double value, double limit,
                          weft_angles view);
+
+/* ---- Which poses of a plan show first what goes wrong ---- */
+
+enum { WEFT_PREFLIGHT_POSES = 5 };
+
+/* Numbers of shots: of the view nearest the zenith, then of up to four of the lowest ring of views, as far round from
+ * each other as there are; each with the highest light that its view has. Returns how many there are. Pure. */
+int weft_preflight_poses(const weft_session *session, int shot[WEFT_PREFLIGHT_POSES]);
+
+/* ---- The contact sheet: what a pre-flight saw, on one picture ---- */
+
+/* A black sheet for so many poses. Errors: WEFT_SYSTEM. */
+weft_code weft_sheet_create(const weft_session *session, int poses, weft_image *sheet, weft_error *error);
+
+/* Puts the photographs of a pose into its row. Pure. */
+void weft_sheet_put(const weft_session *session, int row, const weft_preflight_photographs *photographs,
+                    weft_image *sheet);
 
 #endif

@@ -1,4 +1,4 @@
-#include "capture/preflight/poses.h"
+#include "capture/preflight/measure.h"
 
 static const double same_rad = 1e-6;
 

@@ -1,7 +1,6 @@
 #include "capture/preflight/preflight.h"
 
-#include "capture/preflight/poses.h"
-#include "capture/preflight/sheet.h"
+#include "capture/preflight/measure.h"
 #include "capture/shooting.h"
 
 #include <libgen.h>

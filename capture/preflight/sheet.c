@@ -1,4 +1,4 @@
-#include "capture/preflight/sheet.h"
+#include "capture/preflight/measure.h"
 
 #include "base/picture/colour.h"
 

@@ -1,4 +1,4 @@
-#include "capture/status/status_overview.h"
+#include "capture/status/status_page.h"
 
 #include "base/text/html_page.h"
 

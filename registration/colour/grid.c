@@ -1,4 +1,4 @@
-#include "registration/colour/grid.h"
+#include "registration/colour/patches.h"
 
 #include "base/numeric/statistics.h"
 #include "registration/pose/opencv_bridge.h"

@@ -3,8 +3,6 @@
 #include "base/numeric/statistics.h"
 #include "base/picture/colour.h"
 #include "registration/colour/chart_library.h"
-#include "registration/colour/grid.h"
-#include "registration/colour/plain_matrix.h"
 
 #include <dlfcn.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "registration/colour/plain_matrix.h"
+#include "registration/colour/patches.h"
 
 #include "base/numeric/cholesky.h"
 

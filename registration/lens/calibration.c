@@ -1,6 +1,6 @@
 #include "registration/lens/calibration.h"
 
-#include "registration/lens/judgement.h"
+#include "registration/lens/fit.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "registration/lens/judgement.h"
+#include "registration/lens/fit.h"
 
 #include <math.h>
 

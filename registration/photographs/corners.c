@@ -1,4 +1,4 @@
-#include "registration/photographs/corners.h"
+#include "registration/photographs/steps.h"
 
 #include "registration/photographs/corner_fit_bridge.h"
 

@@ -1,4 +1,4 @@
-#include "registration/photographs/folder.h"
+#include "registration/photographs/steps.h"
 
 #include "base/text/image_list.h"
 #include "registration/photographs/file_colours.h"

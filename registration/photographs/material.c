@@ -1,4 +1,4 @@
-#include "registration/photographs/material.h"
+#include "registration/photographs/steps.h"
 
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"

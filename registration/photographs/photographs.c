@@ -3,12 +3,9 @@
 #include "base/clock.h"
 #include "registration/lamp/exposure.h"
 #include "registration/photographs/certainty.h"
-#include "registration/photographs/corners.h"
 #include "registration/photographs/exposure_pairs.h"
 #include "registration/photographs/file_colours.h"
-#include "registration/photographs/folder.h"
-#include "registration/photographs/material.h"
-#include "registration/photographs/pose.h"
+#include "registration/photographs/steps.h"
 #include "registration/photographs/thumbnail.h"
 
 #include <math.h>

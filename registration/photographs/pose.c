@@ -1,4 +1,4 @@
-#include "registration/photographs/pose.h"
+#include "registration/photographs/steps.h"
 
 #include "registration/pose/refine.h"
 
