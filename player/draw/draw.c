@@ -8,8 +8,6 @@
 
 enum { HURRIED_COMPONENTS = 16 };
 
-static const double golden_ratio = 0.6180339887498949;
-
 /* A frame has the shadows of few directions of the environment. A fold that sees none of them is not black: it sees
  * this share of all. */
 static const double seen_of_none = 0.12;
@@ -35,8 +33,8 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     weft_lighting lighting = lighting_of(p, scene, sampling);
     weft_gl_set_int(program, "light_count", lighting.count);
     int held = weft_lighting_held(&lighting);
-    glUniform3fv(glGetUniformLocation(program, "light_direction"), held, lighting.direction[0]);
-    glUniform3fv(glGetUniformLocation(program, "light_irradiance"), held, lighting.irradiance[0]);
+    glUniform3fv(weft_gl_uniform(program, "light_direction"), held, lighting.direction[0]);
+    glUniform3fv(weft_gl_uniform(program, "light_irradiance"), held, lighting.irradiance[0]);
     weft_gl_set_int(program, "scene_count", lighting.scene_count);
     weft_gl_set_int(program, "set_count", lighting.set_count);
     weft_gl_set_int(program, "key_count", lighting.key_count);
@@ -52,28 +50,11 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     }
 }
 
-double weft_player_sequence(const weft_player *p, long frame)
-{
-    return fmod((frame < 0 ? (double)p->frames_drawn : (double)frame) * golden_ratio, 1);
-}
-
-void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
-{
-    weft_orbit_axes ray = weft_orbit_rays(&scene->orbit, pane->width, pane->height,
-                                          pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height);
-    weft_gl_set_vec3(program, "ray_right", ray.right.x, ray.right.y, ray.right.z);
-    weft_gl_set_vec3(program, "ray_up", ray.up.x, ray.up.y, ray.up.z);
-    weft_gl_set_vec3(program, "ray_forward", -ray.backward.x, -ray.backward.y, -ray.backward.z);
-    weft_gl_set_vec2(program, "pane_origin", pane->left, 0);
-}
-
 void weft_player_set_point(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane,
                            const weft_layer *layer)
 {
     weft_player_set_rays(program, scene, pane);
     set_lights(p, program, scene, &pane->sampling);
-    /* A frame at rest takes longer and shows less of its choices. */
-    weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
     weft_gl_set_float(program, "sequence", weft_player_sequence(p, pane->sampling.frame));
     weft_layer_bind(layer, program);
     if (!weft_scene_has_shadows(scene))
@@ -85,12 +66,12 @@ void weft_player_set_point(const weft_player *p, GLuint program, const weft_scen
 
 static void set_shown(const weft_player *p, GLuint program, const weft_scene *scene, weft_mode mode)
 {
+    weft_gl_set_int(program, "opaque", weft_player_is_opaque(p, mode));
     weft_gl_set_float(program, "exposure", scene->exposure);
     weft_gl_set_int(program, "show_level", scene->show_level);
     weft_gl_set_int(program, "show_extrapolation", scene->show_extrapolation);
-    glUniform3fv(glGetUniformLocation(program, "level_palette"), WEFT_LEVEL_COLOURS, weft_level_palette[0]);
-    glUniform3fv(glGetUniformLocation(program, "extrapolation_tint"), WEFT_EXTRAPOLATION_TINTS,
-                 weft_extrapolation_tint[0]);
+    glUniform3fv(weft_gl_uniform(program, "level_palette"), WEFT_LEVEL_COLOURS, weft_level_palette[0]);
+    glUniform3fv(weft_gl_uniform(program, "extrapolation_tint"), WEFT_EXTRAPOLATION_TINTS, weft_extrapolation_tint[0]);
     /* A ring was measured to within rounding. */
     weft_gl_set_vec2(program, "last_ring", p->last_ring_z[mode][0] - 1e-3, p->last_ring_z[mode][1] - 1e-3);
 }
@@ -155,12 +136,15 @@ static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft
                              GLuint target, weft_error *error)
 {
     GLuint program;
-    const weft_program_kind kind = weft_player_kind(p, scene, pane);
-    WEFT_TRY(weft_programs_find(&p->programs, &kind, &program, error));
+    const weft_variant variant = weft_player_variant(p, scene, pane);
+    WEFT_TRY(weft_programs_find(&p->programs, &variant, &program, error));
     glUseProgram(program);
     weft_player_set_point(p, program, scene, pane, layer);
     set_shown(p, program, scene, pane->mode);
     weft_player_bind_mode(p, scene, pane->mode, program);
+    /* A frame at rest takes longer and shows less of its choices. */
+    if (pane->mode == WEFT_MODE_ANALYTIC && !weft_player_has_threads(p))
+        weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
     weft_player_shade(p, pane, layer, target);
     return WEFT_OK;
 }

@@ -104,13 +104,6 @@ weft_code weft_player_finish_ground(weft_player *p, const weft_scene *scene, wef
     return sum_shadows(p, scene, WEFT_GROUND_DIRECTIONS, error);
 }
 
-void weft_player_forget_shadows(weft_player *p)
-{
-    weft_shadow_map_forget(&p->shadow);
-    for (int i = 0; i < WEFT_GROUND_LIGHTS; i++)
-        p->ground_shadow[i].count = 0;
-}
-
 /* ---- Light ---- */
 
 /* What falls on the ground, of the first light and of all others. */
@@ -122,7 +115,7 @@ static void set_light(const weft_player *p, GLuint program, const weft_scene *sc
         for (int c = 0; c < 3; c++)
             sum[i > 0 || l.scene_count == 0][c] += l.irradiance[i][c] * fmaxf(l.direction[i][2], 0);
     }
-    glUniform3fv(glGetUniformLocation(program, "ground_light"), WEFT_GROUND_LIGHTS, sum[0]);
+    glUniform3fv(weft_gl_uniform(program, "ground_light"), WEFT_GROUND_LIGHTS, sum[0]);
 }
 
 static void set_shadows(const weft_player *p, GLuint program, const weft_scene *scene)
@@ -136,8 +129,8 @@ static void set_shadows(const weft_player *p, GLuint program, const weft_scene *
         share[i] = is_there ? 1 / (float)shadow->count : 0;
         weft_gl_bind(program, name[i], i, GL_TEXTURE_2D, shadow->hidden);
     }
-    glUniform1fv(glGetUniformLocation(program, "hidden_side"), WEFT_GROUND_LIGHTS, side);
-    glUniform1fv(glGetUniformLocation(program, "hidden_share"), WEFT_GROUND_LIGHTS, share);
+    glUniform1fv(weft_gl_uniform(program, "hidden_side"), WEFT_GROUND_LIGHTS, side);
+    glUniform1fv(weft_gl_uniform(program, "hidden_share"), WEFT_GROUND_LIGHTS, share);
 }
 
 void weft_player_use_ground(const weft_player *p, const weft_scene *scene, const weft_pane *pane)

@@ -80,7 +80,7 @@ void weft_ground_shadow_begin(weft_ground_shadow *s, weft_vec3 light, GLuint pro
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     glUseProgram(program);
-    glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, clip_of_world);
+    glUniformMatrix4fv(weft_gl_uniform(program, "clip_of_world"), 1, GL_FALSE, clip_of_world);
 }
 
 void weft_ground_shadow_end(weft_ground_shadow *s)

@@ -78,6 +78,13 @@ void weft_player_free(weft_player *p)
 
 /* ---- What is shown ---- */
 
+void weft_player_forget_shadows(weft_player *p)
+{
+    weft_shadow_map_forget(&p->shadow);
+    for (int i = 0; i < WEFT_GROUND_LIGHTS; i++)
+        p->ground_shadow[i].count = 0;
+}
+
 static void describe_attribute(GLuint location, GLint size, size_t offset)
 {
     glEnableVertexAttribArray(location);

@@ -82,7 +82,7 @@ void weft_player_set_point(const weft_player *player, GLuint program, const weft
 void weft_player_shade(const weft_player *player, const weft_pane *pane, const weft_layer *layer, GLuint target);
 
 /* Which program shades a pane, and its textures and switches. */
-weft_program_kind weft_player_kind(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
+weft_variant weft_player_variant(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
 void weft_player_bind_mode(const weft_player *player, const weft_scene *scene, weft_mode mode, GLuint program);
 
 /* Whether the cloth of a mode has no holes. */
@@ -90,8 +90,8 @@ bool weft_player_is_opaque(const weft_player *player, weft_mode mode);
 
 /* Which program draws the shadow of cloth of the mode, which has holes. Soft shadows are means over many frames: there
  * a neighbour at random will do, without heights. */
-weft_program_kind weft_player_casting_kind(const weft_player *player, const weft_scene *scene, weft_mode mode,
-                                           bool is_soft);
+weft_variant weft_player_casting_variant(const weft_player *player, const weft_scene *scene, weft_mode mode,
+                                         bool is_soft);
 
 /* Where the random choices of a frame begin. Successive frames start a golden section apart: evenly spread, however
  * many there are. */

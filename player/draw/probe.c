@@ -167,9 +167,9 @@ static weft_code draw_plot(weft_player *p, const weft_scene *scene, const weft_p
     alone.light_count = 1;
     alone.filter = WEFT_FILTER_EXACT;
     const weft_pane pane = {probe->mode, window->left, window->width, window->height, {.frame = 0}};
-    weft_program_kind kind = weft_player_kind(p, &alone, &pane);
-    kind.plot = plot;
-    WEFT_TRY(weft_programs_find(&p->programs, &kind, &program, error));
+    weft_variant variant = weft_player_variant(p, &alone, &pane);
+    variant.plot = plot;
+    WEFT_TRY(weft_programs_find(&p->programs, &variant, &program, error));
     glViewport(pane.left, 0, pane.width, pane.height);
     glUseProgram(program);
     weft_player_bind_mode(p, &alone, probe->mode, program);

@@ -8,7 +8,8 @@
 
 enum { WEFT_MAX_LIGHTS = 52 }; /* of one frame: those of the scene and 48 of the environment */
 
-typedef struct weft_program_kind {
+/* What a program does. */
+typedef struct weft_variant {
     weft_mode mode;
     bool stochastic, shadows, one_light;
     int chosen_lights; /* of the environment, by chance; 0: all of it */
@@ -26,24 +27,24 @@ typedef struct weft_program_kind {
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */
     bool pruned;     /* tinted where the scene that it was pruned for does not reach */
-} weft_program_kind;
+} weft_variant;
 
-enum { WEFT_PROGRAM_CAPACITY = 32 };
+enum { WEFT_PROGRAM_CAPACITY = 32, WEFT_VARIANT_TEXT = 896 };
 
+/* In the order of their building; the oldest goes where there is no room. */
 typedef struct weft_programs {
     int count;
-    weft_program_kind kind[WEFT_PROGRAM_CAPACITY];
-    GLuint name[WEFT_PROGRAM_CAPACITY];
-    GLuint surface[2];  /* [1]: of what lies behind another layer */
-    GLuint geometry[2]; /* [1]: with shadows */
+    struct {
+        char text[WEFT_VARIANT_TEXT]; /* what its shaders differ in from others: the key */
+        GLuint name;
+    } program[WEFT_PROGRAM_CAPACITY];
 } weft_programs;
 
 /* Start from a zeroed value. */
 void weft_programs_free(weft_programs *programs);
 
 /* *program stays owned by `programs`. Errors: WEFT_SYSTEM where the driver refuses the source. */
-weft_code weft_programs_find(weft_programs *programs, const weft_program_kind *kind, GLuint *program,
-                             weft_error *error);
+weft_code weft_programs_find(weft_programs *programs, const weft_variant *variant, GLuint *program, weft_error *error);
 
 /* The same for the program that draws a layer of the surface (player/draw/shaders/surface.frag.glsl) and for the one
  * that writes the inputs of the shading (player/draw/shaders/geometry.frag.glsl). */

@@ -88,7 +88,7 @@ bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_v
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.5f, 16);
     glUseProgram(program);
-    glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, clip_of_world);
+    glUniformMatrix4fv(weft_gl_uniform(program, "clip_of_world"), 1, GL_FALSE, clip_of_world);
     return true;
 }
 
@@ -102,7 +102,6 @@ void weft_shadow_map_bind(const weft_shadow_map *map, GLuint program, int unit)
 {
     weft_gl_bind(program, "shadow_map", unit, GL_TEXTURE_2D_ARRAY, map->depth);
     weft_gl_set_float(program, "shadow_texel", map->texel);
-    glUniform1fv(glGetUniformLocation(program, "shadow_share"), WEFT_SHADOW_LAYERS, map->share);
-    glUniformMatrix4fv(glGetUniformLocation(program, "shadow_of_world"), WEFT_SHADOW_LAYERS, GL_FALSE,
-                       map->of_world[0]);
+    glUniform1fv(weft_gl_uniform(program, "shadow_share"), WEFT_SHADOW_LAYERS, map->share);
+    glUniformMatrix4fv(weft_gl_uniform(program, "shadow_of_world"), WEFT_SHADOW_LAYERS, GL_FALSE, map->of_world[0]);
 }

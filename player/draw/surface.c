@@ -4,7 +4,23 @@
 #include "player/draw/player.h"
 
 static const double automatic = -1000, finest_of_all = -100;
+static const double golden_ratio = 0.6180339887498949;
 static const double smallest_triangle = 8; /* pixels */
+
+double weft_player_sequence(const weft_player *p, long frame)
+{
+    return fmod((frame < 0 ? (double)p->frames_drawn : (double)frame) * golden_ratio, 1);
+}
+
+void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
+{
+    weft_orbit_axes ray = weft_orbit_rays(&scene->orbit, pane->width, pane->height,
+                                          pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height);
+    weft_gl_set_vec3(program, "ray_right", ray.right.x, ray.right.y, ray.right.z);
+    weft_gl_set_vec3(program, "ray_up", ray.up.x, ray.up.y, ray.up.z);
+    weft_gl_set_vec3(program, "ray_forward", -ray.backward.x, -ray.backward.y, -ray.backward.z);
+    weft_gl_set_vec2(program, "pane_origin", pane->left, 0);
+}
 
 static double level_uniform(const weft_scene *scene)
 {
@@ -58,7 +74,7 @@ static void set_view(const weft_player *p, GLuint program, const weft_scene *sce
     float matrix[16];
     weft_orbit_clip_of_world(&scene->orbit, p->centre, p->radius, (double)pane->width / pane->height,
                              pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height, matrix);
-    glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, matrix);
+    glUniformMatrix4fv(weft_gl_uniform(program, "clip_of_world"), 1, GL_FALSE, matrix);
     weft_gl_set_float(program, "level_bias", pane->sampling.level_bias);
     weft_gl_set_float(program, "longest_pixel", fmax(pane->sampling.longest_pixel, 1));
     set_material(p, program, scene, pane->mode);
@@ -143,8 +159,8 @@ weft_code weft_player_find_caster(weft_player *p, const weft_scene *scene, bool 
     *program = p->shadow.program;
     if (!p->shadow_holes.any)
         return WEFT_OK;
-    const weft_program_kind kind = weft_player_casting_kind(p, scene, p->shadow_holes.mode, is_soft);
-    return weft_programs_find(&p->programs, &kind, program, error);
+    const weft_variant variant = weft_player_casting_variant(p, scene, p->shadow_holes.mode, is_soft);
+    return weft_programs_find(&p->programs, &variant, program, error);
 }
 
 void weft_player_set_caster(const weft_player *p, const weft_scene *scene, weft_vec3 light, double sequence,

@@ -1,6 +1,11 @@
 #include "player/gl/gl.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* The first uniform that was set and that no shader of its program declares; until weft_gl_check reports it. */
+static _Thread_local char undeclared[64];
 
 static const char *error_name(GLenum code)
 {
@@ -23,11 +28,17 @@ static const char *error_name(GLenum code)
 weft_code weft_gl_check(const char *action, weft_error *error)
 {
     GLenum first = glGetError();
-    if (first == GL_NO_ERROR)
+    if (first == GL_NO_ERROR && !undeclared[0])
         return WEFT_OK;
     /* A lost context reports for ever. */
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; i++)
         continue;
+    if (undeclared[0]) {
+        weft_error_set(error, WEFT_SYSTEM, "no shader declares the uniform '%s', which is set while %s", undeclared,
+                       action);
+        undeclared[0] = 0;
+        return WEFT_SYSTEM;
+    }
     return weft_fail(error, WEFT_SYSTEM, "OpenGL: %s while %s", error_name(first), action);
 }
 
@@ -45,6 +56,11 @@ static const char *preamble(void)
                  "precision highp usampler2DArray;\n";
 }
 
+static const char *stage_name(GLenum stage)
+{
+    return stage == GL_VERTEX_SHADER ? "vertex" : "fragment";
+}
+
 static weft_code fail_log(const char *name, const char *stage, char *log, weft_error *error)
 {
     log[strcspn(log, "\n")] = '\0';
@@ -55,8 +71,12 @@ static weft_code compile(const char *name, GLenum stage, const char *const *part
 {
     const char *source[MAX_PARTS] = {preamble()};
     int count = 1;
-    for (; *part && count < MAX_PARTS; part++)
+    for (; *part; part++) {
+        if (count == MAX_PARTS)
+            return weft_fail(error, WEFT_SYSTEM, "the %s shader of '%s' has more than %d parts", stage_name(stage),
+                             name, MAX_PARTS - 1);
         source[count++] = *part;
+    }
     *shader = glCreateShader(stage);
     glShaderSource(*shader, count, source, NULL);
     glCompileShader(*shader);
@@ -67,7 +87,7 @@ static weft_code compile(const char *name, GLenum stage, const char *const *part
     char log[400] = "compile: ";
     size_t used = strlen(log);
     glGetShaderInfoLog(*shader, (GLsizei)(sizeof log - used), NULL, log + used);
-    return fail_log(name, stage == GL_VERTEX_SHADER ? "vertex" : "fragment", log, error);
+    return fail_log(name, stage_name(stage), log, error);
 }
 
 static weft_code link(const char *name, GLuint program, GLuint vertex, GLuint fragment, weft_error *error)
@@ -79,8 +99,6 @@ static weft_code link(const char *name, GLuint program, GLuint vertex, GLuint fr
     glBindAttribLocation(program, WEFT_ATTRIBUTE_TANGENT, "tangent");
     glBindAttribLocation(program, WEFT_ATTRIBUTE_COORDINATE, "coordinate");
     glLinkProgram(program);
-    glDetachShader(program, vertex);
-    glDetachShader(program, fragment);
     GLint linked;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
     if (linked)
@@ -111,24 +129,87 @@ weft_code weft_gl_program(const char *name, const char *const *vertex, const cha
     return code;
 }
 
+/* ---- Uniforms ---- */
+
+/* Where `word` stands in the text by itself, or NULL. */
+static const char *find_word(const char *text, const char *word, size_t length)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    const char *at = strstr(text, word);
+    while (at && ((at > text && strchr(letters, at[-1])) || (at[length] && strchr(letters, at[length]))))
+        at = strstr(at + 1, word);
+    return at;
+}
+
+/* Whether a declaration "uniform ...;" of the text has the name. */
+static bool declares(char *text, const char *name)
+{
+    bool found = false;
+    for (const char *at = find_word(text, "uniform", 7); at && !found; at = find_word(at, "uniform", 7)) {
+        char *end = strchr(at, ';');
+        if (!end)
+            break;
+        *end = 0;
+        found = find_word(at, name, strlen(name)) != NULL;
+        at = end + 1;
+    }
+    return found;
+}
+
+static bool shader_declares(GLuint shader, const char *name)
+{
+    GLint size = 0;
+    glGetShaderiv(shader, GL_SHADER_SOURCE_LENGTH, &size);
+    char *text = calloc((size_t)size + 1, 1);
+    if (!text)
+        return true;
+    glGetShaderSource(shader, size, NULL, text);
+    bool found = declares(text, name);
+    free(text);
+    return found;
+}
+
+/* Compilers remove what no pixel needs; only a name that the text does not have either is wrong. */
+static void note_undeclared(GLuint program, const char *name)
+{
+    GLuint shader[2];
+    GLsizei count = 0;
+    char array[sizeof undeclared];
+    snprintf(array, sizeof array, "%.*s", (int)strcspn(name, "["), name);
+    glGetAttachedShaders(program, 2, &count, shader);
+    for (GLsizei i = 0; i < count; i++)
+        if (shader_declares(shader[i], array))
+            return;
+    if (!undeclared[0])
+        memcpy(undeclared, array, sizeof undeclared);
+}
+
+GLint weft_gl_uniform(GLuint program, const char *name)
+{
+    GLint location = glGetUniformLocation(program, name);
+    if (location < 0)
+        note_undeclared(program, name);
+    return location;
+}
+
 void weft_gl_set_int(GLuint program, const char *name, int value)
 {
-    glUniform1i(glGetUniformLocation(program, name), value);
+    glUniform1i(weft_gl_uniform(program, name), value);
 }
 
 void weft_gl_set_float(GLuint program, const char *name, double value)
 {
-    glUniform1f(glGetUniformLocation(program, name), (float)value);
+    glUniform1f(weft_gl_uniform(program, name), (float)value);
 }
 
 void weft_gl_set_vec2(GLuint program, const char *name, double x, double y)
 {
-    glUniform2f(glGetUniformLocation(program, name), (float)x, (float)y);
+    glUniform2f(weft_gl_uniform(program, name), (float)x, (float)y);
 }
 
 void weft_gl_set_vec3(GLuint program, const char *name, double x, double y, double z)
 {
-    glUniform3f(glGetUniformLocation(program, name), (float)x, (float)y, (float)z);
+    glUniform3f(weft_gl_uniform(program, name), (float)x, (float)y, (float)z);
 }
 
 /* ---- Textures ---- */

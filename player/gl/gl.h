@@ -7,7 +7,8 @@
 #include <epoxy/gl.h>
 #include <stdbool.h>
 
-/* Reports and clears OpenGL's error flags. Errors: WEFT_SYSTEM "OpenGL: invalid operation while ACTION". */
+/* Reports and clears OpenGL's error flags, and the first uniform that was set though its program does not declare it.
+ * Errors: WEFT_SYSTEM "OpenGL: invalid operation while ACTION". */
 weft_code weft_gl_check(const char *action, weft_error *error);
 
 /* Vertex attributes of every program, by location. */
@@ -15,11 +16,15 @@ enum { WEFT_ATTRIBUTE_POSITION, WEFT_ATTRIBUTE_NORMAL, WEFT_ATTRIBUTE_TANGENT, W
 
 /* Compiles and links a program from parts (NULL-terminated arrays of source text), for GLSL 3.30 core or GLSL ES 3.00
  * as the context has it; #version and precisions are put in front. The caller deletes *program. Errors: WEFT_SYSTEM
- * with the first line of the compiler's complaint. */
+ * with the first line of the compiler's complaint, or for more than 15 parts. */
 weft_code weft_gl_program(const char *name, const char *const *vertex, const char *const *fragment, GLuint *program,
                           weft_error *error);
 
-/* Uniforms by name, of the program in use; a name the compiler removed is ignored. */
+/* The location of a uniform; -1 where the compiler removed it, and setting it does nothing. A name that no shader of
+ * the program declares is an error: the next weft_gl_check names it. */
+GLint weft_gl_uniform(GLuint program, const char *name);
+
+/* Uniforms by name, of the program in use; names are checked likewise. */
 void weft_gl_set_int(GLuint program, const char *name, int value);
 void weft_gl_set_float(GLuint program, const char *name, double value);
 void weft_gl_set_vec2(GLuint program, const char *name, double x, double y);

@@ -90,7 +90,7 @@ static int set_letters(const weft_letters *letters, label_vertex *vertex, const 
 static void draw(const weft_labels *labels, int width, int height, const label_vertex *vertex, int count,
                  const weft_label_ink *colours)
 {
-    GLint ink = glGetUniformLocation(labels->program, "ink");
+    GLint ink = weft_gl_uniform(labels->program, "ink");
     glBindVertexArray(labels->vertex_array);
     glBindBuffer(GL_ARRAY_BUFFER, labels->vertex_buffer);
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)count * sizeof *vertex), vertex, GL_STREAM_DRAW);

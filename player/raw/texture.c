@@ -115,7 +115,7 @@ static void set_tiles(const weft_raw_texture *t, int part, GLuint program, const
 {
     const weft_raw_tiles *tiles = &t->plan.tiles[part];
     int width = t->plan.layout.width;
-    glUniform2i(glGetUniformLocation(program, shape), tiles->layers, width);
+    glUniform2i(weft_gl_uniform(program, shape), tiles->layers, width);
     weft_gl_set_vec2(program, size, (double)width * tiles->columns, t->plan.layout.height);
 }
 
@@ -129,9 +129,8 @@ void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
     weft_direction_texture_bind(&t->directions, program, 1);
     weft_gl_bind(program, "raw_opacity", 3, GL_TEXTURE_2D_ARRAY, t->part[opacity]);
     weft_gl_set_int(program, "level_count", t->plan.layout.level_count);
-    weft_gl_set_int(program, "opaque", t->opaque);
     set_tiles(t, WEFT_RAW_SAMPLES, program, "raw_tiles", "raw_atlas_size");
     set_tiles(t, opacity, program, "opacity_tiles", "opacity_atlas_size");
     weft_relief_texture_bind(&t->relief, program, 4);
-    glUniform4fv(glGetUniformLocation(program, "level_area"), t->plan.layout.level_count, area[0]);
+    glUniform4fv(weft_gl_uniform(program, "level_area"), t->plan.layout.level_count, area[0]);
 }

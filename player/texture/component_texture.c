@@ -231,7 +231,7 @@ static void set_areas(const weft_mip_layout *layout, GLuint program, const char 
 {
     float area[WEFT_MIP_LEVELS][4];
     weft_mip_layout_areas(layout, area);
-    glUniform4fv(glGetUniformLocation(program, areas), layout->level_count, area[0]);
+    glUniform4fv(weft_gl_uniform(program, areas), layout->level_count, area[0]);
     weft_gl_set_vec2(program, step, 1.0 / layout->width, 1.0 / layout->height);
 }
 

@@ -226,17 +226,17 @@ void weft_material_texture_bind(const weft_material_texture *t, GLuint program, 
         /* Unit 2 is that of a light table, which lobes alone have. */
         weft_component_texture_bind(&t->components, program, 5, 2);
         weft_relief_texture_bind(&t->relief, program, 9);
+    } else {
+        weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);
     }
-    weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);
     weft_gl_bind(program, "material_table", 1, GL_TEXTURE_2D_ARRAY, t->table.name);
     weft_gl_bind(program, "material_light_table", 2, GL_TEXTURE_2D_ARRAY, t->light_table.name);
     weft_direction_texture_bind(&t->directions, program, 3);
-    weft_gl_set_int(program, "opaque", t->opaque);
     weft_gl_set_int(program, "level_count", t->layout.level_count);
     weft_gl_set_vec2(program, "texel_step", 1.0 / t->layout.width, 1.0 / t->layout.height);
     weft_gl_set_float(program, "table_columns", t->table.columns);
     weft_gl_set_float(program, "light_table_columns", t->light_table.columns);
     float area[WEFT_MIP_LEVELS][4];
     weft_mip_layout_areas(&t->layout, area);
-    glUniform4fv(glGetUniformLocation(program, "level_area"), t->layout.level_count, area[0]);
+    glUniform4fv(weft_gl_uniform(program, "level_area"), t->layout.level_count, area[0]);
 }

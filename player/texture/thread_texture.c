@@ -27,5 +27,4 @@ size_t weft_thread_texture_bytes(const weft_thread_texture *t)
 void weft_thread_texture_bind(const weft_thread_texture *t, GLuint program)
 {
     weft_gl_bind(program, "thread_table", 0, GL_TEXTURE_2D, t->table);
-    weft_gl_set_int(program, "opaque", 1);
 }

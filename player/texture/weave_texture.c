@@ -74,8 +74,7 @@ void weft_weave_texture_bind(const weft_weave_texture *t, GLuint program, unsign
     weft_gl_bind(program, "weave_table", 0, GL_TEXTURE_2D, t->table);
     weft_gl_bind(program, "weave_mean", 1, GL_TEXTURE_2D, noise_seed && t->noisy_mean ? t->noisy_mean : t->mean);
     weft_direction_texture_bind(&t->directions, program, 2);
-    weft_gl_set_int(program, "opaque", 1);
-    glUniform2ui(glGetUniformLocation(program, "noise_seed"), noise_seed, 0);
+    glUniform2ui(weft_gl_uniform(program, "noise_seed"), noise_seed, 0);
     weft_gl_set_vec2(program, "weave_tiles", t->layout.tiles_u, t->layout.tiles_v);
     weft_gl_set_vec2(program, "weave_corner", t->layout.corner_u, t->layout.corner_v);
 }

@@ -26,38 +26,38 @@ static weft_headless *open_context(weft_gl_profile profile)
 enum { LOBES = 64, COMPONENTS = 16, OTHERS = 32 }; /* choices of a program of each kind */
 
 /* The bits of `choice` say what the program does; those of the compressed material beyond LOBES draw components. */
-static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
+static weft_variant variant_of(weft_mode mode, int plot, int choice)
 {
     bool compressed = mode == WEFT_MODE_COMPRESSED, factorised = compressed && choice >= LOBES;
-    return (weft_program_kind){.mode = mode,
-                               .plot = plot,
-                               .stochastic = choice & 1,
-                               .shadows = choice & 2,
-                               .one_light = choice & 4,
-                               .noise = mode == WEFT_MODE_ANALYTIC && choice & 16,
-                               .threads = mode == WEFT_MODE_ANALYTIC && choice & 8,
-                               .component_groups = factorised ? 4 : 0,
-                               .drawn_groups = factorised ? 2 : 0,
-                               .incidence_power = factorised && choice & 8 ? 1 + (choice >> 1 & 1) : 0,
-                               .opacity = factorised && choice & 4,
-                               .lobe_count = compressed && choice & 8 ? 3 : 0,
-                               .view_table = compressed && choice & 16,
-                               .light_table = compressed && choice & 32};
+    return (weft_variant){.mode = mode,
+                          .plot = plot,
+                          .stochastic = choice & 1,
+                          .shadows = choice & 2,
+                          .one_light = choice & 4,
+                          .noise = mode == WEFT_MODE_ANALYTIC && choice & 16,
+                          .threads = mode == WEFT_MODE_ANALYTIC && choice & 8,
+                          .component_groups = factorised ? 4 : 0,
+                          .drawn_groups = factorised ? 2 : 0,
+                          .incidence_power = factorised && choice & 8 ? 1 + (choice >> 1 & 1) : 0,
+                          .opacity = factorised && choice & 4,
+                          .lobe_count = compressed && choice & 8 ? 3 : 0,
+                          .view_table = compressed && choice & 16,
+                          .light_table = compressed && choice & 32};
 }
 
 /* A program that draws shadows of cloth with holes. */
-static weft_program_kind casting_kind(int choice)
+static weft_variant casting_variant(int choice)
 {
     bool is_raw = choice & 1, factorised = !is_raw && choice & 2;
-    return (weft_program_kind){.mode = is_raw ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED,
-                               .casts = true,
-                               .opacity = true,
-                               .one_light = true,
-                               .stochastic = choice & 4,
-                               .relief = (is_raw || factorised) && choice & 8,
-                               .component_groups = factorised ? 4 : 0,
-                               .drawn_groups = factorised,
-                               .view_table = true};
+    return (weft_variant){.mode = is_raw ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED,
+                          .casts = true,
+                          .opacity = true,
+                          .one_light = true,
+                          .stochastic = choice & 4,
+                          .relief = (is_raw || factorised) && choice & 8,
+                          .component_groups = factorised ? 4 : 0,
+                          .drawn_groups = factorised,
+                          .view_table = true};
 }
 
 /* What only pictures bind must not stand where a plot binds something else. The software rasteriser does not count such
@@ -87,15 +87,15 @@ static void build_every_program(void)
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         /* Each choice with one of the plots: they do not know each other. */
         for (int choice = 0; choice < (mode == WEFT_MODE_COMPRESSED ? LOBES + COMPONENTS : OTHERS); choice++) {
-            const weft_program_kind kind = kind_of((weft_mode)mode, (choice + choice / 3) % 3, choice);
-            expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
+            const weft_variant variant = variant_of((weft_mode)mode, (choice + choice / 3) % 3, choice);
+            expect_ok(weft_programs_find(&programs, &variant, &program, &error), &error);
             placed += expect_samplers_placed(program);
         }
     }
     assert_true(placed > 100);
     for (int choice = 0; choice < 16; choice++) {
-        const weft_program_kind kind = casting_kind(choice);
-        expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
+        const weft_variant variant = casting_variant(choice);
+        expect_ok(weft_programs_find(&programs, &variant, &program, &error), &error);
     }
     for (int i = 0; i < 2; i++) {
         expect_ok(weft_programs_find_surface(&programs, i, &program, &error), &error);
