@@ -6,7 +6,8 @@
 #include <limits.h>
 
 typedef struct play_command {
-    weft_scene_values values;
+    weft_common_options common;
+    weft_settings settings;
     int frame_limit; /* 0 = until the window is closed */
 } play_command;
 
@@ -19,22 +20,21 @@ static const weft_option option_table[] = {
 };
 
 /* A window has a panel beside its picture. */
-static void choose_size(weft_scene_request *scene)
+static void choose_size(weft_settings *settings)
 {
-    if (scene->source || weft_scene_request_has(scene, "size"))
+    if (settings->source || weft_settings_has(settings, "size"))
         return;
-    scene->settings.width = WINDOW_WIDTH;
-    scene->settings.height = WINDOW_HEIGHT;
+    settings->width = WINDOW_WIDTH;
+    settings->height = WINDOW_HEIGHT;
 }
 
 static weft_code play(play_command *command, weft_error *error)
 {
-    const weft_common_options *common = &command->values.common;
     const weft_application_setup setup = {
-        .request = &command->values.scene,
+        .settings = &command->settings,
         .frame_limit = command->frame_limit,
         .measure = weft_scene_error_describe,
-        .log = weft_command_log(common),
+        .log = weft_command_log(&command->common),
     };
     weft_application *application;
     WEFT_TRY(weft_application_create(&setup, &application, error));
@@ -43,7 +43,8 @@ static weft_code play(play_command *command, weft_error *error)
         long frames;
         double frame_ms;
         weft_application_speed(application, &frames, &frame_ms);
-        weft_command_say(common, "%ld frames, %.1f ms each, drawn by %s", frames, frame_ms, weft_gl_renderer());
+        weft_command_say(&command->common, "%ld frames, %.1f ms each, drawn by %s", frames, frame_ms,
+                         weft_gl_renderer());
     }
     weft_application_free(application);
     return code;
@@ -53,11 +54,11 @@ static int run(int argc, char **argv)
 {
     play_command command = {0};
     weft_arguments_parse(&weft_command_play, argc, argv, &command);
-    choose_size(&command.values.scene);
+    choose_size(&command.settings);
     weft_error error = {0};
     weft_code code = play(&command, &error);
-    weft_scene_request_free(&command.values.scene);
-    return weft_command_exit("play", &command.values.common, code, &error);
+    weft_settings_free(&command.settings);
+    return weft_command_exit("play", &command.common, code, &error);
 }
 
 const weft_command weft_command_play = {
@@ -69,6 +70,6 @@ const weft_command weft_command_play = {
                      "to move the light, H for all keys. "
                      "Files may be dropped on it, and are read again when they change.",
     .options = option_table,
-    .shows_scene = true,
+    .settings_offset = offsetof(play_command, settings),
     .run = run,
 };

@@ -8,7 +8,8 @@
 #include "player/settings/scene_loader.h"
 
 typedef struct prune_command {
-    weft_scene_values values;
+    weft_common_options common;
+    weft_settings settings;
     const char *output, *path_file;
     weft_prune_error allowed;
     uint64_t seed;
@@ -35,8 +36,7 @@ static const weft_option option_table[] = {
 static weft_code check(void *values, weft_error *error)
 {
     const prune_command *command = values;
-    return command->values.scene.settings.material ? WEFT_OK
-                                                   : weft_fail(error, WEFT_BAD_USAGE, "needs a material: NAME.weft");
+    return command->settings.material ? WEFT_OK : weft_fail(error, WEFT_BAD_USAGE, "needs a material: NAME.weft");
 }
 
 /* ---- What it says ---- */
@@ -75,8 +75,8 @@ static void say_errors(const weft_common_options *common, const weft_prune_repor
 
 static weft_code say(const prune_command *command, const weft_prune_report *report, weft_error *error)
 {
-    const weft_common_options *common = &command->values.common;
-    double before = (double)weft_file_bytes(command->values.scene.settings.material);
+    const weft_common_options *common = &command->common;
+    double before = (double)weft_file_bytes(command->settings.material);
     double after = (double)weft_file_bytes(command->output);
     say_reach(common, report);
     say_errors(common, report);
@@ -96,8 +96,8 @@ static weft_code say(const prune_command *command, const weft_prune_report *repo
 static weft_code prune_material(prune_command *command, weft_player *player, weft_material *material,
                                 weft_prune_report *report, weft_error *error)
 {
-    const weft_settings *settings = &command->values.scene.settings;
-    const weft_progress progress = weft_command_progress(&command->values.common);
+    const weft_settings *settings = &command->settings;
+    const weft_progress progress = weft_command_progress(&command->common);
     weft_mesh mesh;
     WEFT_TRY(weft_mesh_open(settings->mesh, &mesh, error));
     const weft_prune_scene scene = {.mesh = &mesh,
@@ -115,18 +115,18 @@ static weft_code prune_material(prune_command *command, weft_player *player, wef
 
 static weft_code prune(prune_command *command, weft_player *player, weft_error *error)
 {
-    const weft_common_options *common = &command->values.common;
+    const weft_common_options *common = &command->common;
     const weft_progress progress = weft_command_progress(common);
     const weft_log log = weft_command_log(common);
-    weft_scene_request *request = &command->values.scene;
+    weft_settings *settings = &command->settings;
     weft_material material;
     weft_prune_report report;
     bool exposed;
     if (command->path_file)
         WEFT_TRY(weft_path_read(command->path_file, &command->path, error));
-    WEFT_TRY(weft_scene_load(request, player, &progress, &log, error));
-    WEFT_TRY(weft_expose(request, player, &request->settings.scene, &exposed, error));
-    WEFT_TRY(weft_material_read(request->settings.material, &material, error));
+    WEFT_TRY(weft_scene_load(settings, player, &progress, &log, error));
+    WEFT_TRY(weft_expose(settings, player, &settings->scene, &exposed, error));
+    WEFT_TRY(weft_material_read(settings->material, &material, error));
     weft_code code = prune_material(command, player, &material, &report, error);
     weft_material_free(&material);
     return code == WEFT_OK ? say(command, &report, error) : code;
@@ -152,8 +152,8 @@ static int run(int argc, char **argv)
     weft_error error = {0};
     weft_code code = run_headless(&command, &error);
     weft_path_free(&command.path);
-    weft_scene_request_free(&command.values.scene);
-    return weft_command_exit("prune", &command.values.common, code, &error);
+    weft_settings_free(&command.settings);
+    return weft_command_exit("prune", &command.common, code, &error);
 }
 
 const weft_command weft_command_prune = {
@@ -166,7 +166,7 @@ const weft_command weft_command_prune = {
         "can never reach, and data that changes them by less than the allowed error. Mesh, camera, lights and "
         "size of the picture are given as for weft render.",
     .options = option_table,
-    .shows_scene = true,
+    .settings_offset = offsetof(prune_command, settings),
     .needs = "-o SMALL.weft",
     .check = check,
     .run = run,

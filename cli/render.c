@@ -2,13 +2,14 @@
 #include "compare/pictures/scene_error.h"
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
-#include "player/settings/sequence.h"
 #include "player/settings/scene_loader.h"
+#include "player/settings/sequence.h"
 
 enum { DEFAULT_FPS = 25 };
 
 typedef struct render_command {
-    weft_scene_values values;
+    weft_common_options common;
+    weft_settings settings;
     const char *output;
     const char *path_file;    /* of a sequence, or NULL */
     double frames_per_second; /* 0: not given */
@@ -29,8 +30,7 @@ static const weft_option option_table[] = {
 /* Refuses options that would do nothing for want of another. In a window what they want may come later. */
 static weft_code refuse_idle(const render_command *command, weft_error *error)
 {
-    const weft_scene_request *request = &command->values.scene;
-    const weft_settings *s = &request->settings;
+    const weft_settings *s = &command->settings;
     const struct {
         const char *option;
         bool works;
@@ -50,7 +50,7 @@ static weft_code refuse_idle(const render_command *command, weft_error *error)
         {"tone", !weft_settings_is_linear(command->output), "-o OUT.png: other pictures are linear"},
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-        if (weft_scene_request_has(request, row[i].option) && !row[i].works)
+        if (weft_settings_has(s, row[i].option) && !row[i].works)
             return weft_fail(error, WEFT_BAD_USAGE, "--%s needs %s", row[i].option, row[i].wanted);
     if (command->frames_per_second > 0 && !command->path_file)
         return weft_fail(error, WEFT_BAD_USAGE, "--fps needs --path PATH.csv");
@@ -83,15 +83,15 @@ static bool asks_of_lobes(const weft_scene *scene)
 /* Chooses what the command line left open, and says what that was. A linear picture keeps its numbers. */
 static weft_code look(const render_command *command, weft_player *player, weft_scene *scene, weft_error *error)
 {
-    const weft_common_options *common = &command->values.common;
-    const weft_scene_request *request = &command->values.scene;
+    const weft_common_options *common = &command->common;
+    const weft_settings *settings = &command->settings;
     char text[WEFT_MESSAGE_SIZE];
     bool exposed = false;
     if (!weft_settings_is_linear(command->output))
-        WEFT_TRY(weft_expose(request, player, scene, &exposed, error));
+        WEFT_TRY(weft_expose(settings, player, scene, &exposed, error));
     if (exposed)
         weft_command_say(common, "exposure %.3g (--exposure 1 shows reflectance)", scene->exposure);
-    WEFT_TRY(weft_describe_unmeasured(request, player, scene, text, error));
+    WEFT_TRY(weft_describe_unmeasured(settings, player, scene, text, error));
     if (text[0])
         weft_command_say(common, "%s", text);
     if (weft_player_layer_count(player) > 0 && scene->components >= WEFT_COMPONENTS_GROUP && asks_of_lobes(scene))
@@ -103,8 +103,8 @@ static weft_code look(const render_command *command, weft_player *player, weft_s
 
 static weft_code draw_picture(render_command *command, weft_player *player, weft_error *error)
 {
-    const weft_common_options *common = &command->values.common;
-    const weft_settings *settings = &command->values.scene.settings;
+    const weft_common_options *common = &command->common;
+    const weft_settings *settings = &command->settings;
     weft_progress progress = weft_command_progress(common);
     char errors[WEFT_SCENE_ERROR_SIZE];
     WEFT_TRY(weft_settings_draw(command->output, player, settings, &progress, error));
@@ -119,23 +119,22 @@ static weft_code draw_picture(render_command *command, weft_player *player, weft
 
 static weft_code draw(render_command *command, weft_player *player, weft_error *error)
 {
-    const weft_progress progress = weft_command_progress(&command->values.common);
-    const weft_log log = weft_command_log(&command->values.common);
-    weft_scene_request *scene = &command->values.scene;
+    const weft_progress progress = weft_command_progress(&command->common);
+    const weft_log log = weft_command_log(&command->common);
+    weft_settings *settings = &command->settings;
     if (command->path_file)
         WEFT_TRY(weft_path_read(command->path_file, &command->path, error));
-    WEFT_TRY(weft_scene_load(scene, player, &progress, &log, error));
-    WEFT_TRY(look(command, player, &scene->settings.scene, error));
+    WEFT_TRY(weft_scene_load(settings, player, &progress, &log, error));
+    WEFT_TRY(look(command, player, &settings->scene, error));
     if (!command->path_file)
         return draw_picture(command, player, error);
     double frames_per_second = command->frames_per_second > 0 ? command->frames_per_second : DEFAULT_FPS;
-    return weft_sequence_draw(command->output, &command->path, frames_per_second, &scene->settings, player, &progress,
-                              error);
+    return weft_sequence_draw(command->output, &command->path, frames_per_second, settings, player, &progress, error);
 }
 
 static weft_code render(render_command *command, weft_error *error)
 {
-    const weft_settings *settings = &command->values.scene.settings;
+    const weft_settings *settings = &command->settings;
     weft_headless *headless = NULL;
     weft_player *player = NULL;
     WEFT_TRY(weft_headless_create(WEFT_GL_CORE, &headless, error));
@@ -143,7 +142,7 @@ static weft_code render(render_command *command, weft_error *error)
     if (code == WEFT_OK)
         code = draw(command, player, error);
     if (code == WEFT_OK)
-        weft_command_say(&command->values.common, "%s: %d x %d, drawn by %s", command->output, settings->width,
+        weft_command_say(&command->common, "%s: %d x %d, drawn by %s", command->output, settings->width,
                          settings->height, weft_gl_renderer());
     weft_player_free(player);
     weft_headless_free(headless);
@@ -157,8 +156,8 @@ static int run(int argc, char **argv)
     weft_error error = {0};
     weft_code code = render(&command, &error);
     weft_path_free(&command.path);
-    weft_scene_request_free(&command.values.scene);
-    return weft_command_exit("render", &command.values.common, code, &error);
+    weft_settings_free(&command.settings);
+    return weft_command_exit("render", &command.common, code, &error);
 }
 
 const weft_command weft_command_render = {
@@ -168,7 +167,7 @@ const weft_command weft_command_render = {
     .documentation = "Example: weft render silk.weft --raw silk.btf.h5 --weave silk.wv --mode split -o silk.png\n\n"
                      "Draws a material without a window. The picture keeps its settings: --settings draws it again.",
     .options = option_table,
-    .shows_scene = true,
+    .settings_offset = offsetof(render_command, settings),
     .needs = "-o OUT.png",
     .check = check,
     .run = run,

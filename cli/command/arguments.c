@@ -10,7 +10,7 @@
 
 const char *argp_program_version = "weft " WEFT_VERSION;
 
-enum { MAX_ROWS = 80, FIRST_KEY = 0x1000, FIRST_FORMER_KEY = 0x2000, COMMON_GROUP = 9 };
+enum { MAX_ROWS = 80, MAX_GIVEN = 256, FIRST_KEY = 0x1000, FIRST_FORMER_KEY = 0x2000, COMMON_GROUP = 9 };
 
 static const weft_option common_table[] = {
     {"quiet", 'q', .help = "Print nothing but errors", .group = COMMON_GROUP, .kind = WEFT_OPTION_FLAG,
@@ -29,15 +29,19 @@ typedef struct arguments {
     int row_count, place_count, option_count;
     struct {
         const weft_option *option;
-        const weft_setting *setting; /* of the scene, or NULL */
+        const weft_setting *setting; /* of the picture, or NULL */
         bool is_given, by_former_name;
     } row[MAX_ROWS];
     struct argp_option option[2 * MAX_ROWS + 8]; /* with former names, headings and the end */
+    int given_count;
+    weft_given_option given[MAX_GIVEN]; /* settings of the picture: kept until all are there */
 } arguments;
 
-static weft_scene_request *scene_of(const arguments *a)
+/* NULL where the command draws no picture. */
+static weft_settings *settings_of(const arguments *a)
 {
-    return &((weft_scene_values *)a->values)->scene;
+    size_t offset = a->command->settings_offset;
+    return offset > 0 ? (weft_settings *)((char *)a->values + offset) : NULL;
 }
 
 /* ---- The table of argp ---- */
@@ -81,7 +85,7 @@ static void add_option(void *context, const weft_option *option, const weft_sett
 
 static void add_rows(arguments *a)
 {
-    if (a->command->shows_scene)
+    if (a->command->settings_offset > 0)
         for (int group = 1; weft_settings_group(group); group++)
             add_heading(a, weft_settings_group(group), group);
     add_heading(a, "Common options:", COMMON_GROUP);
@@ -97,7 +101,7 @@ void weft_arguments_each(const weft_command *command, weft_arguments_visit *visi
 {
     for (const weft_option *option = command->options; is_row(option); option++)
         visit(context, option, NULL);
-    if (command->shows_scene)
+    if (command->settings_offset > 0)
         for (const weft_setting *setting = weft_settings_schema(); setting->key || setting->option.name; setting++)
             if (is_row(&setting->option))
                 visit(context, &setting->option, setting);
@@ -116,14 +120,21 @@ static void insist(weft_code code, const weft_error *error, struct argp_state *s
         argp_failure(state, (int)code, 0, "%s", error->message);
 }
 
+static weft_code give(arguments *a, const weft_setting *setting, const char *text, weft_error *error)
+{
+    if (a->given_count == MAX_GIVEN)
+        return weft_fail(error, WEFT_BAD_USAGE, "more than %d options", MAX_GIVEN);
+    a->given[a->given_count++] = (weft_given_option){setting, text};
+    return WEFT_OK;
+}
+
 static void set(arguments *a, int row, const char *text, struct argp_state *state)
 {
     weft_error error = {0};
     const weft_option *option = a->row[row].option;
     const weft_setting *setting = a->row[row].setting;
     a->row[row].is_given = true;
-    weft_code code = setting ? weft_scene_request_add(scene_of(a), setting, text, &error)
-                             : weft_option_set(option, text, a->values, &error);
+    weft_code code = setting ? give(a, setting, text, &error) : weft_option_set(option, text, a->values, &error);
     insist(code, &error, state);
 }
 
@@ -218,10 +229,11 @@ static void refuse_overwriting(const arguments *a, struct argp_state *state)
         for (int input = 0; input < a->row_count; input++)
             if (a->row[input].option->kind == WEFT_OPTION_INPUT)
                 refuse_same_file(text_of(a, output), text_of(a, input), state);
-        if (!a->command->shows_scene)
+        const weft_settings *settings = settings_of(a);
+        if (!settings)
             continue;
-        refuse_same_file(text_of(a, output), scene_of(a)->settings.environment, state);
-        refuse_same_file(text_of(a, output), scene_of(a)->settings.material, state);
+        refuse_same_file(text_of(a, output), settings->environment, state);
+        refuse_same_file(text_of(a, output), settings->material, state);
     }
 }
 
@@ -251,13 +263,13 @@ static void check_inputs(const arguments *a, struct argp_state *state)
 }
 
 /* Before a window opens. */
-static void check_scene_inputs(const weft_scene_request *scene, struct argp_state *state)
+static void check_given_inputs(const arguments *a, struct argp_state *state)
 {
     weft_error error = {0};
-    for (int i = 0; i < scene->option_count; i++) {
-        const weft_option *option = &scene->option[i].setting->option;
+    for (int i = 0; i < a->given_count; i++) {
+        const weft_option *option = &a->given[i].setting->option;
         if (option->name && option->kind == WEFT_OPTION_NAME)
-            insist(weft_argument_check_type(option->argument, scene->option[i].text, &error), &error, state);
+            insist(weft_argument_check_type(option->argument, a->given[i].text, &error), &error, state);
     }
 }
 
@@ -268,9 +280,9 @@ static void complete(arguments *a, struct argp_state *state)
         if (a->row[row].option->is_required && !text_of(a, row))
             argp_error(state, "needs %s", a->command->needs);
     refuse_overwriting(a, state);
-    if (a->command->shows_scene) {
-        insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
-        check_scene_inputs(scene_of(a), state);
+    if (settings_of(a)) {
+        insist(weft_settings_of_options(a->given, a->given_count, settings_of(a), &error), &error, state);
+        check_given_inputs(a, state);
         refuse_overwriting(a, state); /* what the settings of another picture name, too */
     }
     check_inputs(a, state);

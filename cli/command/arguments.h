@@ -3,16 +3,11 @@
 #define WEFT_CLI_ARGUMENTS_H
 
 #include "cli/command/command.h"
-#include "player/settings/scene_options.h"
-
-/* What the values of a command begin with that shows a scene. */
-typedef struct weft_scene_values {
-    weft_common_options common;
-    weft_scene_request scene; /* the command frees it */
-} weft_scene_values;
+#include "player/settings/settings.h"
 
 /* Reads the command line into `values` and applies the common options. Wrong usage prints a hint and exits with
- * WEFT_BAD_USAGE; a picture with settings that cannot be read with the code of that. */
+ * WEFT_BAD_USAGE; a picture with settings that cannot be read with the code of that. The command frees its
+ * weft_settings. */
 void weft_arguments_parse(const weft_command *command, int argc, char **argv, void *values);
 
 /* Whether a file is of a kind that the name of an argument allows, as far as both tell: "NAME.weft" is a material,
@@ -20,8 +15,8 @@ void weft_arguments_parse(const weft_command *command, int argc, char **argv, vo
  * file, what it is and what belongs in its place. */
 weft_code weft_argument_check_type(const char *argument, const char *path, weft_error *error);
 
-/* Visits every option of a command: its own, those of a scene with their setting (else NULL), the common ones. Options
- * without a name are arguments that are known by their place, in the order of the places. */
+/* Visits every option of a command: its own, those of a picture with their setting (else NULL), the common ones.
+ * Options without a name are arguments that are known by their place, in the order of the places. */
 typedef void weft_arguments_visit(void *context, const weft_option *option, const weft_setting *setting);
 void weft_arguments_each(const weft_command *command, weft_arguments_visit *visit, void *context);
 

@@ -19,7 +19,7 @@ typedef struct weft_command {
     const char *usage;          /* what follows the name */
     const char *documentation;  /* begins with an example */
     const weft_option *options; /* end with {0}; arguments that are known by their place come in their order */
-    bool shows_scene;           /* takes the options of a scene, too: the values begin with a weft_scene_values */
+    size_t settings_offset;     /* of a weft_settings in the values, which the options of a picture set; 0: none */
     const char *needs;          /* said where a required one is missing */
     const char *surplus;        /* said of one argument too many */
     weft_code (*check)(void *values, weft_error *error); /* of all values together, or NULL. Errors: WEFT_BAD_USAGE */

@@ -16,7 +16,7 @@ static const double black = 0.01;
 /* Of a cone: within it all directions are one. */
 static const double one_direction_rad = WEFT_PI / 180;
 
-/* What the request shows first, small, alone, and as bright as reflectance. */
+/* The first mode that is shown, small, alone, and as bright as reflectance. */
 static weft_scene small_scene(const weft_scene *scene)
 {
     weft_scene small = *scene;
@@ -78,11 +78,11 @@ double weft_exposure_for_picture(float *value, size_t count, bool has_ground)
     return weft_clamp(exposure, 1e-6, 1e6);
 }
 
-weft_code weft_expose(const weft_scene_request *request, weft_player *player, weft_scene *scene, bool *changed,
+weft_code weft_expose(const weft_settings *settings, weft_player *player, weft_scene *scene, bool *changed,
                       weft_error *error)
 {
     *changed = false;
-    if (request->source || weft_scene_request_has(request, "exposure") || scene->layout == WEFT_LAYOUT_DIFFERENCE)
+    if (settings->source || weft_settings_has(settings, "exposure") || scene->layout == WEFT_LAYOUT_DIFFERENCE)
         return WEFT_OK;
     weft_scene small = small_scene(scene);
     weft_surface_sample *surface = NULL;
@@ -118,13 +118,13 @@ static void describe_share(const weft_cone *cone, const char *every, const char 
         snprintf(text, SHARE_SIZE, "%.0f %% %s", 100.0 * (double)beyond / (double)covered, does);
 }
 
-weft_code weft_describe_unmeasured(const weft_scene_request *request, weft_player *player, const weft_scene *scene,
+weft_code weft_describe_unmeasured(const weft_settings *settings, weft_player *player, const weft_scene *scene,
                                    char text[WEFT_MESSAGE_SIZE], weft_error *error)
 {
-    const weft_measured *measured = &request->measured[scene->pane[0]];
+    const weft_measured *measured = &settings->measured[scene->pane[0]];
     weft_surface_sample *surface;
     text[0] = 0;
-    if (!request->knows_measured[scene->pane[0]])
+    if (!settings->knows_measured[scene->pane[0]])
         return WEFT_OK;
     weft_scene small = small_scene(scene);
     WEFT_TRY(weft_player_read_surface(player, &small, small.pane[0], WIDTH, HEIGHT, &surface, error));

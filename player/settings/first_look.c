@@ -35,7 +35,7 @@ static weft_code find_in_dataset(const char *path, bool *known, weft_measured *m
     return WEFT_OK;
 }
 
-/* What the request's material, or else its dataset, was measured from; *known is false where it does not say. */
+/* What the material, or else its dataset, was measured from; *known is false where it does not say. */
 static weft_code find_measured(const weft_settings *settings, bool *known, weft_measured *measured, weft_error *error)
 {
     *known = false;
@@ -44,9 +44,9 @@ static weft_code find_measured(const weft_settings *settings, bool *known, weft_
     return settings->dataset ? find_in_dataset(settings->dataset, known, measured, error) : WEFT_OK;
 }
 
-static bool is_plane(const weft_scene_request *request)
+static bool is_plane(const weft_settings *settings)
 {
-    return strcmp(request->settings.mesh, "plane") == 0;
+    return strcmp(settings->mesh, "plane") == 0;
 }
 
 /* As slant as the first view, and from below the picture's lower edge, so that x is to the right; less slant, or at
@@ -86,44 +86,43 @@ static weft_code lay_flat(weft_settings *settings, weft_error *error)
 }
 
 /* Unless light was asked for, or its absence. */
-static weft_code in_studio(weft_scene_request *request, weft_error *error)
+static weft_code in_studio(weft_settings *settings, weft_error *error)
 {
-    char **environment = &request->settings.environment;
-    if (request->has_lights || weft_scene_request_has(request, "environment"))
+    char **environment = &settings->environment;
+    if (settings->has_lights || weft_settings_has(settings, "environment"))
         return WEFT_OK;
-    weft_look(request, weft_surroundings_words[0]);
+    weft_settings_light(settings, weft_surroundings_words[0]);
     return weft_option_copy(weft_surroundings_words[0], environment, error);
 }
 
-weft_code weft_first_look(weft_scene_request *request, weft_error *error)
+weft_code weft_first_look(weft_settings *settings, weft_error *error)
 {
-    weft_settings *settings = &request->settings;
     weft_measured measured;
-    if (request->source)
+    if (settings->source)
         return WEFT_OK;
-    if (is_plane(request) && !request->has_camera)
+    if (is_plane(settings) && !weft_settings_has(settings, "camera"))
         settings->scene.orbit =
             (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
     bool known;
     WEFT_TRY(find_measured(settings, &known, &measured, error));
     if (!known || holds_default(&measured))
-        return in_studio(request, error);
-    if (!weft_scene_request_has(request, "mesh"))
+        return in_studio(settings, error);
+    if (!weft_settings_has(settings, "mesh"))
         WEFT_TRY(lay_flat(settings, error));
-    if (!request->has_camera)
+    if (!weft_settings_has(settings, "camera"))
         look_from(&settings->scene, &measured);
-    if (!request->has_lights && settings->scene.light_count > 0)
+    if (!settings->has_lights && settings->scene.light_count > 0)
         light_from(&settings->scene, measured.first_light);
     return WEFT_OK;
 }
 
-void weft_first_fit(weft_scene_request *request, const weft_mesh *mesh)
+void weft_first_fit(weft_settings *settings, const weft_mesh *mesh)
 {
     const double margin = 0.93;
-    weft_orbit *orbit = &request->settings.scene.orbit;
+    weft_orbit *orbit = &settings->scene.orbit;
     weft_orbit_axes axes = weft_orbit_axes_of(orbit);
     float centre[3], radius;
-    if (request->source || request->has_camera)
+    if (settings->source || weft_settings_has(settings, "camera"))
         return;
     weft_mesh_bounds(mesh, centre, &radius);
     for (int i = 0; i < mesh->vertex_count; i++) {

@@ -40,18 +40,18 @@ static weft_code start_all(weft_scene_loader *l, weft_error *error)
     l->waiting_dataset = *dataset;
     *dataset = NULL;
     l->starting = true;
-    l->wanted = l->chosen = l->stage.request->settings.scene;
+    l->wanted = l->chosen = l->stage.settings->scene;
     return WEFT_OK;
 }
 
-weft_code weft_scene_loader_create(weft_scene_request *request, weft_scene_loader **result, weft_error *error)
+weft_code weft_scene_loader_create(weft_settings *settings, weft_scene_loader **result, weft_error *error)
 {
     *result = NULL;
     weft_scene_loader *l = calloc(1, sizeof *l);
     if (!l)
         return weft_fail_memory(error, "loader", sizeof *l);
-    l->stage.request = request;
-    weft_code code = weft_first_look(request, error);
+    l->stage.settings = settings;
+    weft_code code = weft_first_look(settings, error);
     if (code == WEFT_OK)
         code = weft_loader_create(&l->loader, error);
     if (code == WEFT_OK)
@@ -104,16 +104,17 @@ static bool panes_are_there(const weft_scene *scene, const weft_player *player)
 static bool choose_panes(weft_scene_loader *l)
 {
     static const weft_mode preference[WEFT_MODE_COUNT] = {WEFT_MODE_COMPRESSED, WEFT_MODE_RAW, WEFT_MODE_ANALYTIC};
-    weft_scene_request *o = l->stage.request;
-    weft_scene *scene = &o->settings.scene;
+    weft_settings *s = l->stage.settings;
+    weft_scene *scene = &s->scene;
     scene->layout = l->wanted.layout;
     scene->pane_count = l->wanted.pane_count;
     memcpy(scene->pane, l->wanted.pane, sizeof scene->pane);
     bool compares = scene->layout != WEFT_LAYOUT_PANES;
-    bool is_chosen = (o->has_modes && !o->split && (scene->pane_count > 1 || !compares)) || (o->source && !o->split);
+    bool is_chosen =
+        (weft_settings_has(s, "mode") && !s->split && (scene->pane_count > 1 || !compares)) || (s->source && !s->split);
     if (is_chosen && panes_are_there(scene, l->stage.player))
         return true;
-    bool all = o->split || compares;
+    bool all = s->split || compares;
     scene->pane_count = 0;
     for (int i = 0; i < WEFT_MODE_COUNT && (all || scene->pane_count == 0); i++) {
         weft_mode mode = all ? (weft_mode)i : preference[i];
@@ -129,7 +130,7 @@ static bool choose_panes(weft_scene_loader *l)
 /* While files arrive one after the other, panes are added, until the user chooses others. */
 static void add_panes(weft_scene_loader *l)
 {
-    const weft_scene *scene = &l->stage.request->settings.scene, *chosen = &l->chosen;
+    const weft_scene *scene = &l->stage.settings->scene, *chosen = &l->chosen;
     bool is_mine = scene->layout == chosen->layout && scene->pane_count == chosen->pane_count &&
                    memcmp(scene->pane, chosen->pane, sizeof scene->pane) == 0;
     if (!is_mine)
@@ -141,7 +142,7 @@ static void add_panes(weft_scene_loader *l)
 /* What the user dropped is shown, unless several modes are. */
 static void show_dropped(weft_scene_loader *l)
 {
-    weft_scene *scene = &l->stage.request->settings.scene;
+    weft_scene *scene = &l->stage.settings->scene;
     if (scene->layout != WEFT_LAYOUT_PANES || scene->pane_count > 1)
         return;
     if (l->stage.slot == WEFT_SLOT_DATASET)
@@ -184,11 +185,11 @@ weft_code weft_scene_loader_finish(weft_scene_loader *l, const weft_progress *pr
     return WEFT_OK;
 }
 
-weft_code weft_scene_load(weft_scene_request *request, weft_player *player, const weft_progress *progress,
+weft_code weft_scene_load(weft_settings *settings, weft_player *player, const weft_progress *progress,
                           const weft_log *log, weft_error *error)
 {
     weft_scene_loader *loader = NULL;
-    WEFT_TRY(weft_scene_loader_create(request, &loader, error));
+    WEFT_TRY(weft_scene_loader_create(settings, &loader, error));
     weft_code code = weft_scene_loader_attach(loader, player, error);
     if (code == WEFT_OK)
         code = weft_scene_loader_finish(loader, progress, log, error);
@@ -212,7 +213,7 @@ const weft_hold_out *weft_scene_loader_held_out(const weft_scene_loader *l)
 /* What the player shows is what the settings name. */
 static weft_code clear_what_is_not_named(weft_scene_loader *l, weft_error *error)
 {
-    const weft_settings *s = &l->stage.request->settings;
+    const weft_settings *s = l->stage.settings;
     const char *const named[WEFT_MODE_COUNT] = {s->dataset, s->material, s->weave};
     static const weft_scene_slot slot[WEFT_MODE_COUNT] = {WEFT_SLOT_DATASET, WEFT_SLOT_MATERIAL, WEFT_SLOT_WEAVE};
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
@@ -238,11 +239,9 @@ static weft_code open_picture(weft_scene_loader *l, const char *path, weft_error
         weft_settings_free(&settings);
         return code;
     }
-    weft_scene_request *o = l->stage.request;
-    weft_settings_free(&o->settings);
-    o->settings = settings;
-    o->source = "";
-    o->split = false;
+    weft_settings_free(l->stage.settings);
+    *l->stage.settings = settings;
+    l->stage.settings->source = "";
     WEFT_TRY(clear_what_is_not_named(l, error));
     WEFT_TRY(start_all(l, error));
     return start_dataset(l, error);

@@ -3,13 +3,13 @@
 #define WEFT_PLAYER_SETTINGS_SCENE_LOADER_H
 
 #include "btf/material/held_out.h"
-#include "player/settings/scene_options.h"
+#include "player/settings/settings.h"
 
 typedef struct weft_scene_loader weft_scene_loader;
 
-/* Begins to read what the settings of `request` name, which must live on; needs no OpenGL. From here on the settings
+/* Begins to read what `settings` name, which must live on; needs no OpenGL. From here on the settings
  * name what is shown. The caller frees with weft_scene_loader_free, before the player. Errors: WEFT_SYSTEM. */
-weft_code weft_scene_loader_create(weft_scene_request *request, weft_scene_loader **result, weft_error *error);
+weft_code weft_scene_loader_create(weft_settings *settings, weft_scene_loader **result, weft_error *error);
 void weft_scene_loader_free(weft_scene_loader *loader);
 
 /* Says where to show it; before all functions below. Errors: WEFT_SYSTEM. */
@@ -27,7 +27,7 @@ weft_code weft_scene_loader_finish(weft_scene_loader *loader, const weft_progres
                                    weft_error *error);
 
 /* All of these at once, for who only wants the picture. Errors: as above. */
-weft_code weft_scene_load(weft_scene_request *request, weft_player *player, const weft_progress *progress,
+weft_code weft_scene_load(weft_settings *settings, weft_player *player, const weft_progress *progress,
                           const weft_log *log, weft_error *error);
 
 /* Share of the file that is being read; -1: none. */

@@ -41,7 +41,7 @@ void weft_scene_stage_free(weft_scene_stage *stage)
 
 char **weft_scene_stage_path(weft_scene_stage *stage, weft_scene_slot slot)
 {
-    weft_settings *settings = &stage->request->settings;
+    weft_settings *settings = stage->settings;
     char **const path[WEFT_SLOT_COUNT] = {&settings->material, &settings->mesh, &settings->weave,
                                           &settings->environment, &settings->dataset};
     return path[slot];
@@ -139,14 +139,14 @@ static weft_code show_environment(part *p, weft_error *error)
     if (code != WEFT_OK)
         return weft_fail(error, code, "'%s': %s", p->path, cause.message);
     if (p->by_user)
-        p->stage->request->settings.scene.environment = true;
+        p->stage->settings->scene.environment = true;
     return WEFT_OK;
 }
 
 static weft_code show_mesh(part *p, weft_error *error)
 {
     WEFT_TRY(weft_player_set_mesh(p->stage->player, &p->mesh, error));
-    weft_first_fit(p->stage->request, &p->mesh);
+    weft_first_fit(p->stage->settings, &p->mesh);
     p->stage->mesh = p->mesh;
     p->stage->mesh.vertex = NULL;
     p->stage->mesh.index = NULL;
@@ -191,7 +191,7 @@ static weft_code show_in_player(part *p, weft_error *error)
  * on yarns; alone it has its own size. */
 static void lay_out(weft_scene_stage *stage)
 {
-    weft_settings *settings = &stage->request->settings;
+    weft_settings *settings = stage->settings;
     const double *measured_mm = stage->width_mm;
     double width_mm =
         measured_mm[WEFT_SLOT_MATERIAL] > 0 ? measured_mm[WEFT_SLOT_MATERIAL] : measured_mm[WEFT_SLOT_DATASET];
@@ -208,12 +208,12 @@ static void lay_out(weft_scene_stage *stage)
 
 static void note_measured(const part *p)
 {
-    weft_scene_request *request = p->stage->request;
+    weft_settings *settings = p->stage->settings;
     if (p->slot != WEFT_SLOT_MATERIAL && p->slot != WEFT_SLOT_DATASET)
         return;
     weft_mode mode = p->slot == WEFT_SLOT_MATERIAL ? WEFT_MODE_COMPRESSED : WEFT_MODE_RAW;
-    request->knows_measured[mode] = p->knows_measured;
-    request->measured[mode] = p->measured;
+    settings->knows_measured[mode] = p->knows_measured;
+    settings->measured[mode] = p->measured;
 }
 
 static weft_code show_part(void *data, weft_error *error)
@@ -257,11 +257,11 @@ weft_code weft_scene_part_start(weft_scene_stage *stage, weft_loader *loader, we
     part *p = calloc(1, sizeof *p);
     if (!p)
         return weft_fail_memory(error, "load", sizeof *p);
-    const double *tiles = stage->request->settings.tiles;
+    const double *tiles = stage->settings->tiles;
     *p = (part){.stage = stage, .slot = slot, .by_user = by_user, .path = strdup(path), .tiles = {tiles[0], tiles[1]}};
     weft_code code = p->path ? WEFT_OK : weft_fail_memory(error, "name", strlen(path));
     if (code == WEFT_OK && slot == WEFT_SLOT_DATASET)
-        code = weft_dataset_load_create(stage->player, stage->request->settings.raw_format, &p->dataset, error);
+        code = weft_dataset_load_create(stage->player, stage->settings->raw_format, &p->dataset, error);
     if (code == WEFT_OK)
         return weft_loader_start(loader, (int)slot, &steps, p, error);
     release_part(p);

@@ -4,7 +4,7 @@
 
 #include "btf/material/held_out.h"
 #include "player/settings/loader.h"
-#include "player/settings/scene_options.h"
+#include "player/settings/settings.h"
 #include "reflectance/weave/weave.h"
 
 typedef enum weft_scene_slot {
@@ -24,7 +24,7 @@ typedef struct weft_woven {
 
 /* What parts change as they are read and shown. */
 typedef struct weft_scene_stage {
-    weft_scene_request *request;      /* its settings name what is shown */
+    weft_settings *settings;          /* name what is shown */
     weft_player *player;              /* must be set before a dataset is started, and before anything is shown */
     char *metadata;                   /* of the material read last; the reader's alone */
     double width_mm[WEFT_SLOT_COUNT]; /* of a measured model; 0: unknown */

@@ -16,8 +16,8 @@ typedef struct weft_setting {
     size_t stride, count_offset; /* count_offset: of the int that counts them */
 } weft_setting;
 
-/* The groups of the help are numbered from 1; offsets are those in weft_settings and in weft_scene_request
- * (player/settings/scene_options.h), which begins with that. Static storage. */
+/* The groups of the help are numbered from 1; offsets are those in weft_settings (player/settings/settings.h). At
+ * most 64. Static storage. */
 const weft_setting *weft_settings_schema(void);
 
 /* The title of a group; NULL beyond the last. */

@@ -3,11 +3,13 @@
 #ifndef WEFT_PLAYER_SETTINGS_SETTINGS_H
 #define WEFT_PLAYER_SETTINGS_SETTINGS_H
 
+#include "btf/dataset/measured.h"
 #include "player/draw/player.h"
 #include "player/raw/format.h"
 #include "player/scene/scene.h"
+#include "player/settings/schema.h"
 
-/* Every text is owned; NULL: none. */
+/* Every name of a file is owned; NULL: none. */
 typedef struct weft_settings {
     char *material, *dataset, *weave, *environment; /* files */
     char *mesh;                                     /* "drape", "sphere", "plane" or a file */
@@ -19,6 +21,14 @@ typedef struct weft_settings {
     int width, height;
     int samples; /* samples x samples frames for a picture */
     weft_scene scene;
+    /* What the text does not have: how the settings came about */
+    const char *source; /* the picture or text that they began from, or NULL */
+    uint64_t given;     /* the options that were given, a bit for each setting of the schema */
+    bool split;         /* the modes were asked for as "split" */
+    bool has_lights;    /* lights were asked for, or their absence */
+    /* What the files that are shown were measured from, where they say it; the loader fills it in */
+    bool knows_measured[WEFT_MODE_COUNT];
+    weft_measured measured[WEFT_MODE_COUNT];
 } weft_settings;
 
 enum {
@@ -33,6 +43,26 @@ enum {
  * Errors: WEFT_SYSTEM. */
 weft_code weft_settings_init(weft_settings *settings, weft_error *error);
 void weft_settings_free(weft_settings *settings);
+
+/* An option as it was given. */
+typedef struct weft_given_option {
+    const weft_setting *setting;
+    const char *text; /* must live on; NULL: none */
+} weft_given_option;
+
+/* The settings that options come to. --settings comes before all others, wherever it stands; the others follow in their
+ * order. Every file that they name is there. The caller frees with weft_settings_free, also on failure. Errors:
+ * WEFT_BAD_USAGE for an option that cannot be understood and for options that lack another; those of weft_settings_read
+ * and weft_settings_check_files. */
+weft_code weft_settings_of_options(const weft_given_option *option, int count, weft_settings *settings,
+                                   weft_error *error);
+
+/* Whether an option of this name was given. Pure. */
+bool weft_settings_has(const weft_settings *settings, const char *name);
+
+/* Lights the scene by a built-in environment, with its shadows on a ground and highlights that keep their shape, where
+ * no option says otherwise. */
+void weft_settings_light(weft_settings *settings, const char *surroundings);
 
 /* As JSON. Names of files are those seen from the folder of `beside`, so that a folder can be moved with all that is in
  * it. The caller frees *text. Errors: WEFT_BAD_USAGE for numbers that are not finite; WEFT_BAD_INPUT where the folder

@@ -82,7 +82,7 @@ static void on_drop(void *context, const char *path)
 static weft_code open_window(weft_application *a, weft_error *error)
 {
     const weft_window_events events = {on_press, on_move, on_scroll, on_key, on_drop, a};
-    const weft_settings *settings = &a->setup.request->settings;
+    const weft_settings *settings = a->setup.settings;
     char title[sizeof a->title + 8];
     snprintf(title, sizeof title, "Weft - %s", a->title);
     WEFT_TRY(weft_window_create(title, settings->width, settings->height, &events, &a->window, error));
@@ -96,7 +96,7 @@ static weft_code open_window(weft_application *a, weft_error *error)
 /* The name stays as other files are dropped. */
 static void name_after_first_file(weft_application *a)
 {
-    const weft_settings *settings = &a->setup.request->settings;
+    const weft_settings *settings = a->setup.settings;
     const char *first = settings->material  ? settings->material
                         : settings->dataset ? settings->dataset
                                             : settings->weave;
@@ -350,7 +350,7 @@ static weft_code step(weft_application *a, weft_error *error)
 
 weft_code weft_application_run(weft_application *a, weft_error *error)
 {
-    const weft_scene *scene = &a->setup.request->settings.scene;
+    const weft_scene *scene = &a->setup.settings->scene;
     a->interaction = (weft_interaction){.scene = *scene, .start = *scene, .changed = true, .shows_panel = true};
     a->interaction.before = scene->pane[0];
     a->stepped_s = weft_now_s();

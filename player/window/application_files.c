@@ -34,7 +34,7 @@ weft_code weft_application_open_files(weft_application *a, weft_error *error)
         weft_log_line(&a->setup.log, no_watch.message);
     weft_recent_files_read(&a->recent);
     WEFT_TRY(weft_space_mouse_create(&a->mouse, error));
-    return weft_scene_loader_create(a->setup.request, &a->loader, error);
+    return weft_scene_loader_create(a->setup.settings, &a->loader, error);
 }
 
 void weft_application_close_files(weft_application *a)
@@ -50,7 +50,7 @@ void weft_application_close_files(weft_application *a)
 
 const char *weft_application_file(const weft_application *a, weft_mode mode)
 {
-    const weft_settings *s = &a->setup.request->settings;
+    const weft_settings *s = a->setup.settings;
     const char *const path[WEFT_MODE_COUNT] = {s->dataset, s->material, s->weave};
     return path[mode];
 }
@@ -59,7 +59,7 @@ void weft_application_list(weft_application *a, const char *folder)
 {
     char shown[PATH_MAX] = ".";
     weft_error error = {0};
-    const weft_settings *s = &a->setup.request->settings;
+    const weft_settings *s = a->setup.settings;
     const char *path = s->material ? s->material : s->dataset ? s->dataset : s->weave;
     const char *slash = path ? strrchr(path, '/') : NULL;
     if (slash)
@@ -70,7 +70,7 @@ void weft_application_list(weft_application *a, const char *folder)
 
 static weft_code watch_files(weft_application *a, weft_error *error)
 {
-    const weft_settings *s = &a->setup.request->settings;
+    const weft_settings *s = a->setup.settings;
     const char *const path[WEFT_SLOT_COUNT] = {s->material, s->mesh, s->weave, s->environment, s->dataset};
     for (int slot = 0; a->watch && slot < WEFT_SLOT_COUNT; slot++) {
         bool is_file = path[slot] && access(path[slot], F_OK) == 0;
@@ -94,7 +94,7 @@ static void remember_file(weft_application *a, int slot, const char *path)
 /* The material last: it is what most windows are for. */
 static void remember_files(weft_application *a)
 {
-    const weft_settings *s = &a->setup.request->settings;
+    const weft_settings *s = a->setup.settings;
     remember_file(a, WEFT_SLOT_MESH, weft_mesh_is_built_in(s->mesh) ? NULL : s->mesh);
     remember_file(a, WEFT_SLOT_ENVIRONMENT,
                   s->environment && weft_surroundings_are(s->environment) ? NULL : s->environment);
@@ -105,7 +105,7 @@ static void remember_files(weft_application *a)
 
 void weft_application_open(weft_application *a, const char *path)
 {
-    weft_scene *scene = &a->setup.request->settings.scene;
+    weft_scene *scene = &a->setup.settings->scene;
     char note[WEFT_NOTE_SIZE];
     weft_error error = {0}, ignored;
     *scene = a->interaction.scene;
@@ -151,7 +151,7 @@ static weft_code reload_changed(weft_application *a, double now_s, weft_error *e
 
 static weft_code show_arrived(weft_application *a, char note[WEFT_NOTE_SIZE], weft_error *error)
 {
-    weft_scene *scene = &a->setup.request->settings.scene;
+    weft_scene *scene = &a->setup.settings->scene;
     char said[WEFT_MESSAGE_SIZE];
     bool shown;
     *scene = a->interaction.scene;
@@ -215,7 +215,7 @@ static void warn_of_changes(const weft_application *a, char note[WEFT_NOTE_SIZE]
 
 void weft_application_save_picture(weft_application *a)
 {
-    weft_settings *settings = &a->setup.request->settings;
+    weft_settings *settings = a->setup.settings;
     char path[32], note[WEFT_NOTE_SIZE] = "";
     weft_error error = {0};
     int number = 1;

@@ -100,7 +100,7 @@ static void measure(weft_application *a)
     if (a->setup.measure(a->player, &a->interaction.scene, a->canvas.width, a->canvas.height, a->errors, &error) !=
         WEFT_OK)
         weft_application_tell(a, true, error.message);
-    if (weft_describe_unmeasured(a->setup.request, a->player, &a->interaction.scene, a->unmeasured, &error) != WEFT_OK)
+    if (weft_describe_unmeasured(a->setup.settings, a->player, &a->interaction.scene, a->unmeasured, &error) != WEFT_OK)
         weft_application_tell(a, true, error.message);
 }
 
@@ -113,7 +113,7 @@ static weft_code expose_once(weft_application *a, weft_error *error)
         return WEFT_OK;
     a->is_exposed = true;
     if (i->scene.exposure == i->start.exposure)
-        WEFT_TRY(weft_expose(a->setup.request, a->player, &i->scene, &changed, error));
+        WEFT_TRY(weft_expose(a->setup.settings, a->player, &i->scene, &changed, error));
     if (changed)
         i->start.exposure = i->scene.exposure;
     i->changed |= changed;

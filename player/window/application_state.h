@@ -92,7 +92,7 @@ void weft_application_note_time(weft_application *application, double shown_ms);
 
 /* ---- Files and devices ---- */
 
-/* Begins to read what the request names and looks for devices; before there is a window. Errors: WEFT_SYSTEM. */
+/* Begins to read what the settings name and looks for devices; before there is a window. Errors: WEFT_SYSTEM. */
 weft_code weft_application_open_files(weft_application *application, weft_error *error);
 void weft_application_close_files(weft_application *application);
 

@@ -170,7 +170,7 @@ static void add_light(weft_interaction *i)
 static void surroundings_row(weft_application *a)
 {
     static const char *const name[] = {"Studio", "Overcast", "Sky", "Bare"};
-    const char *shown = a->setup.request->settings.environment;
+    const char *shown = a->setup.settings->environment;
     int chosen = a->interaction.scene.environment ? -1 : 3;
     for (int k = 0; chosen < 0 && shown && weft_surroundings_words[k]; k++)
         chosen = strcmp(shown, weft_surroundings_words[k]) == 0 ? k : chosen;
@@ -272,7 +272,7 @@ static void mesh_row(weft_application *a)
     static const char *const name[] = {"Drape", "Ball", "Plane"}, *const wish[] = {"drape", "sphere", "plane"};
     int chosen = -1;
     for (int mesh = 0; mesh < 3; mesh++)
-        chosen = strcmp(a->setup.request->settings.mesh, wish[mesh]) == 0 ? mesh : chosen;
+        chosen = strcmp(a->setup.settings->mesh, wish[mesh]) == 0 ? mesh : chosen;
     if (weft_ui_choice("Mesh", &chosen, name, NULL, 3))
         a->interaction.wants_mesh = wish[chosen];
 }

@@ -13,7 +13,7 @@ enum { WIDTH = 64, HEIGHT = 48 };
 
 typedef struct fixture {
     stage *stage;
-    weft_scene_request request;
+    weft_settings settings;
     weft_scene_loader *loader;
 } fixture;
 
@@ -75,12 +75,11 @@ static fixture *open_scene_as(const char *material, const char *dataset, weft_ra
 {
     fixture *f = &the_fixture;
     weft_error error = {0};
-    f->request = (weft_scene_request){0};
-    expect_ok(weft_settings_init(&f->request.settings, &error), &error);
-    f->request.settings.raw_format = format;
-    f->request.settings.material = material ? strdup(material) : NULL;
-    f->request.settings.dataset = dataset ? strdup(dataset) : NULL;
-    expect_ok(weft_scene_loader_create(&f->request, &f->loader, &error), &error);
+    expect_ok(weft_settings_init(&f->settings, &error), &error);
+    f->settings.raw_format = format;
+    f->settings.material = material ? strdup(material) : NULL;
+    f->settings.dataset = dataset ? strdup(dataset) : NULL;
+    expect_ok(weft_scene_loader_create(&f->settings, &f->loader, &error), &error);
     expect_ok(weft_scene_loader_attach(f->loader, f->stage->player, &error), &error);
     return f;
 }
@@ -94,7 +93,7 @@ static fixture *open_scene(const char *material, const char *dataset)
 static void close_scene(fixture *f)
 {
     weft_scene_loader_free(f->loader);
-    weft_scene_request_free(&f->request);
+    weft_settings_free(&f->settings);
 }
 
 static int texels_shown(const fixture *f)
@@ -106,7 +105,7 @@ static void expect_picture(const fixture *f)
 {
     weft_error error = {0};
     weft_image image = {0};
-    expect_ok(weft_player_picture(f->stage->player, &f->request.settings.scene, WIDTH, HEIGHT, 1, NULL, &image, &error),
+    expect_ok(weft_player_picture(f->stage->player, &f->settings.scene, WIDTH, HEIGHT, 1, NULL, &image, &error),
               &error);
     weft_image_free(&image);
 }
@@ -129,10 +128,10 @@ static void everything_named_is_shown_and_named(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
-    assert_null(f->request.settings.material);
+    assert_null(f->settings.material);
     expect_ok(finish(f, &error), &error);
-    assert_string_equal(f->request.settings.material, "scene_load/a.weft");
-    assert_string_equal(f->request.settings.dataset, "scene_load/a.btf.h5");
+    assert_string_equal(f->settings.material, "scene_load/a.weft");
+    assert_string_equal(f->settings.dataset, "scene_load/a.btf.h5");
     assert_true(weft_player_has(f->stage->player, WEFT_MODE_RAW));
     assert_float_equal(weft_scene_loader_progress(f->loader), -1, 0);
     expect_picture(f);
@@ -148,7 +147,7 @@ static void weaves_and_microcylinders_replace_each_other(void **state)
     expect_ok(finish(f, &error), &error);
     expect_ok(drop(f, WEFT_ASSETS "/microcylinder/satin_face.mc", &error), &error);
     assert_true(weft_player_has(player, WEFT_MODE_ANALYTIC) && weft_player_has_threads(player));
-    f->request.settings.scene.pane[0] = WEFT_MODE_ANALYTIC;
+    f->settings.scene.pane[0] = WEFT_MODE_ANALYTIC;
     expect_picture(f);
     write_text("scene_load/bad.mc", "microcylinder {\n  sigmb = 1\n}\n");
     assert_int_equal(drop(f, "scene_load/bad.mc", &error), WEFT_BAD_INPUT);
@@ -176,11 +175,11 @@ static void a_fitted_weave_is_laid_as_its_file_says(void **state)
     expect_ok(drop(f, "scene_load/fitted.wv", &error), &error);
     weft_weave_layout layout = weft_player_weave_layout(f->stage->player);
     assert_memory_equal(&layout, &fitted, sizeof fitted);
-    f->request.settings.tiles[0] = f->request.settings.tiles[1] = 4;
+    f->settings.tiles[0] = f->settings.tiles[1] = 4;
     expect_ok(drop(f, "scene_load/fitted.wv", &error), &error);
     layout = weft_player_weave_layout(f->stage->player);
     assert_true(layout.tiles_u == 4 && layout.tiles_v == 4 && layout.corner_u == 0 && layout.corner_v == 0);
-    f->request.settings.tiles[0] = f->request.settings.tiles[1] = 0;
+    f->settings.tiles[0] = f->settings.tiles[1] = 0;
     expect_ok(drop(f, WEFT_ASSETS "/weaves/cotton_twill.wv", &error), &error);
     layout = weft_player_weave_layout(f->stage->player);
     assert_true(layout.tiles_u == floor(layout.tiles_u) && layout.corner_u == 0 && layout.corner_v == 0);
@@ -215,7 +214,7 @@ static void panes_that_were_chosen_while_files_arrive_stay(void **state)
     weft_error error = {0};
     for (int chooses = 0; chooses < 2; chooses++) {
         fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
-        weft_scene *scene = &f->request.settings.scene;
+        weft_scene *scene = &f->settings.scene;
         weft_player_clear(f->stage->player, WEFT_MODE_COMPRESSED);
         weft_player_clear(f->stage->player, WEFT_MODE_RAW);
         if (chooses)
@@ -241,7 +240,7 @@ static void a_dropped_material_replaces_the_one_shown(void **state)
     int before = texels_shown(f);
     expect_ok(drop(f, "scene_load/b.weft", &error), &error);
     assert_true(texels_shown(f) < before);
-    assert_string_equal(f->request.settings.material, "scene_load/b.weft");
+    assert_string_equal(f->settings.material, "scene_load/b.weft");
     close_scene(f);
 }
 
@@ -280,8 +279,8 @@ static void a_corrupt_file_leaves_what_was_shown(void **state)
         assert_non_null(strstr(error.message, bad[i]));
     }
     assert_int_equal(texels_shown(f), before);
-    assert_string_equal(f->request.settings.material, "scene_load/a.weft");
-    assert_string_equal(f->request.settings.mesh, "drape");
+    assert_string_equal(f->settings.material, "scene_load/a.weft");
+    assert_string_equal(f->settings.mesh, "drape");
     expect_picture(f);
     close_scene(f);
 }
@@ -306,8 +305,8 @@ static void a_file_may_arrive_while_another_fails(void **state)
         }
     }
     assert_true(both);
-    assert_string_equal(f->request.settings.mesh, "scene_load/quad.obj");
-    assert_string_equal(f->request.settings.material, "scene_load/a.weft");
+    assert_string_equal(f->settings.mesh, "scene_load/quad.obj");
+    assert_string_equal(f->settings.material, "scene_load/a.weft");
     close_scene(f);
 }
 
@@ -329,7 +328,7 @@ static void a_dropped_mesh_and_weave_are_shown(void **state)
     fixture *f = open_scene("scene_load/a.weft", NULL);
     expect_ok(finish(f, &error), &error);
     expect_ok(drop(f, "scene_load/quad.obj", &error), &error);
-    assert_string_equal(f->request.settings.mesh, "scene_load/quad.obj");
+    assert_string_equal(f->settings.mesh, "scene_load/quad.obj");
     expect_ok(drop(f, WEFT_ASSETS "/weaves/polyester_lining.wv", &error), &error);
     assert_true(weft_player_has(f->stage->player, WEFT_MODE_ANALYTIC));
     expect_picture(f);
@@ -342,17 +341,17 @@ static void a_picture_brings_its_settings_and_files_back(void **state)
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
     expect_ok(finish(f, &error), &error);
-    f->request.settings.scene.exposure = 2.5;
-    f->request.settings.width = WIDTH;
-    f->request.settings.height = HEIGHT;
-    f->request.settings.samples = 1;
-    expect_ok(weft_settings_draw("scene_load/shot.png", f->stage->player, &f->request.settings, NULL, &error), &error);
+    f->settings.scene.exposure = 2.5;
+    f->settings.width = WIDTH;
+    f->settings.height = HEIGHT;
+    f->settings.samples = 1;
+    expect_ok(weft_settings_draw("scene_load/shot.png", f->stage->player, &f->settings, NULL, &error), &error);
     expect_ok(drop(f, "scene_load/b.weft", &error), &error);
     expect_ok(drop(f, "scene_load/a.btf.h5", &error), &error);
-    f->request.settings.scene.exposure = 1;
+    f->settings.scene.exposure = 1;
     int small = texels_shown(f);
     expect_ok(drop(f, "scene_load/shot.png", &error), &error);
-    assert_float_equal(f->request.settings.scene.exposure, 2.5, 1e-9);
+    assert_float_equal(f->settings.scene.exposure, 2.5, 1e-9);
     assert_true(texels_shown(f) > small);
     assert_false(weft_player_has(f->stage->player, WEFT_MODE_RAW)); /* the picture knows of none */
     expect_picture(f);
@@ -393,16 +392,16 @@ static void a_weave_has_its_own_size_until_it_lies_on_a_material(void **state)
 {
     (void)state;
     weft_error error = {0};
-    weft_scene_request request = {0};
+    weft_settings settings;
     weft_scene_loader *loader;
-    expect_ok(weft_settings_init(&request.settings, &error), &error);
-    request.settings.weave = strdup(WEFT_ASSETS "/weaves/cotton_denim.wv");
-    expect_ok(weft_scene_loader_create(&request, &loader, &error), &error);
+    expect_ok(weft_settings_init(&settings, &error), &error);
+    settings.weave = strdup(WEFT_ASSETS "/weaves/cotton_denim.wv");
+    expect_ok(weft_scene_loader_create(&settings, &loader, &error), &error);
     expect_ok(weft_scene_loader_attach(loader, the_fixture.stage->player, &error), &error);
     expect_ok(weft_scene_loader_finish(loader, NULL, NULL, &error), &error);
     weft_weave_layout layout = weft_player_weave_layout(the_fixture.stage->player);
     assert_true(layout.tiles_u == 2 && layout.tiles_v == 1);
-    assert_float_equal(request.settings.scene.repeat, 300 / (6 * 0.36), 1e-6);
+    assert_float_equal(settings.scene.repeat, 300 / (6 * 0.36), 1e-6);
     bool shown = true, some = true;
     char note[WEFT_MESSAGE_SIZE];
     expect_ok(weft_scene_loader_open(loader, "scene_load/b.weft", &error), &error);
@@ -413,9 +412,9 @@ static void a_weave_has_its_own_size_until_it_lies_on_a_material(void **state)
     }
     layout = weft_player_weave_layout(the_fixture.stage->player);
     assert_true(layout.tiles_u == 4 && layout.tiles_v == 2); /* about twelve cells across, as the virtual rig has it */
-    assert_float_equal(request.settings.scene.repeat, 300 / (8 * 0.5), 1e-6);
+    assert_float_equal(settings.scene.repeat, 300 / (8 * 0.5), 1e-6);
     weft_scene_loader_free(loader);
-    weft_scene_request_free(&request);
+    weft_settings_free(&settings);
 }
 
 int test_scene_loader(void)

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "player/settings/relative_path.h"
-#include "player/settings/scene_options.h"
+#include "player/settings/settings.h"
 #include "settings_text.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
@@ -165,13 +165,13 @@ static void faults_are_named(void **state)
 /* The settings that one option makes of the default ones, as text; NULL where it cannot be understood. */
 static char *text_with(const weft_setting *setting, const char *text)
 {
-    weft_scene_request request = {0};
+    weft_settings settings = {0};
     weft_error error = none;
     char *result = NULL;
-    assert_int_equal(weft_settings_init(&request.settings, &error), WEFT_OK);
-    if (!setting || weft_option_set(&setting->option, text, &request, &error) == WEFT_OK)
-        result = formatted(&request.settings, "x");
-    weft_scene_request_free(&request);
+    assert_int_equal(weft_settings_init(&settings, &error), WEFT_OK);
+    if (!setting || weft_option_set(&setting->option, text, &settings, &error) == WEFT_OK)
+        result = formatted(&settings, "x");
+    weft_settings_free(&settings);
     return result;
 }
 
