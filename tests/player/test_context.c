@@ -227,6 +227,46 @@ static void a_shader_that_does_not_compile_is_an_error_with_the_reason(void **st
     weft_headless_free(headless);
 }
 
+static void a_uniform_that_no_shader_declares_is_an_error_with_its_name(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    GLuint program;
+    const char *const vertex[] = {"void main() { gl_Position = vec4(0.0); }\n", NULL};
+    const char *const fragment[] = {"uniform float used, removed;\nuniform vec3 list[2];\nout vec4 colour;\n"
+                                    "void main() { colour = vec4(used); }\n",
+                                    NULL};
+    weft_headless *headless = open_context(WEFT_GL_CORE);
+    expect_ok(weft_gl_program("test", vertex, fragment, &program, &error), &error);
+    glUseProgram(program);
+    weft_gl_set_float(program, "used", 1);
+    weft_gl_set_float(program, "removed", 1);
+    weft_gl_set_vec3(program, "list[1]", 1, 1, 1);
+    expect_ok(weft_gl_check("testing", &error), &error);
+    weft_gl_set_float(program, "remove", 1);
+    assert_int_equal(weft_gl_check("testing", &error), WEFT_SYSTEM);
+    assert_string_equal(error.message, "no shader declares the uniform 'remove', which is set while testing");
+    expect_ok(weft_gl_check("testing", &error), &error);
+    glUseProgram(0);
+    glDeleteProgram(program);
+    weft_headless_free(headless);
+}
+
+static void a_shader_of_too_many_parts_is_an_error(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    GLuint program = 1;
+    const char *parts[17] = {"void main() { gl_Position = vec4(0.0); }\n"};
+    for (int i = 1; i < 16; i++)
+        parts[i] = "\n";
+    weft_headless *headless = open_context(WEFT_GL_CORE);
+    assert_int_equal(weft_gl_program("test", parts, parts, &program, &error), WEFT_SYSTEM);
+    assert_string_equal(error.message, "the vertex shader of 'test' has more than 15 parts");
+    assert_int_equal(program, 0);
+    weft_headless_free(headless);
+}
+
 static void drawing_without_a_mesh_or_a_model_is_bad_usage(void **state)
 {
     (void)state;
@@ -277,6 +317,8 @@ int test_context(void)
         cmocka_unit_test(nothing_stays_behind_when_a_player_is_freed),
         cmocka_unit_test(an_opengl_error_comes_back_with_what_was_done),
         cmocka_unit_test(a_shader_that_does_not_compile_is_an_error_with_the_reason),
+        cmocka_unit_test(a_uniform_that_no_shader_declares_is_an_error_with_its_name),
+        cmocka_unit_test(a_shader_of_too_many_parts_is_an_error),
         cmocka_unit_test(drawing_without_a_mesh_or_a_model_is_bad_usage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
