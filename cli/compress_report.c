@@ -155,11 +155,11 @@ static void report_ceiling(const weft_compressed *done)
     for (size_t i = 0; i < count; i++)
         cut += finest->ceiling[i] == UINT8_MAX;
     if (cut > 0)
-        weft_command_say(
-            done->common,
-            "values above %.0f were clipped in %zu of %zu squares of %d x %d texels: check that a white diffuser is 1, or "
-            "fit lobes (--lobes 2)",
-            (double)weft_ceiling_of_code(UINT8_MAX), cut, count, WEFT_CEILING_SIDE, WEFT_CEILING_SIDE);
+        weft_command_say(done->common,
+                         "values above %.0f were clipped in %zu of %zu squares of %d x %d texels: check that a white "
+                         "diffuser is 1, or "
+                         "fit lobes (--lobes 2)",
+                         (double)weft_ceiling_of_code(UINT8_MAX), cut, count, WEFT_CEILING_SIDE, WEFT_CEILING_SIDE);
 }
 
 /* Whoever lays the cloth larger than the sample sees where it is repeated, unless it tiles. */

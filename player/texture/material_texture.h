@@ -21,8 +21,8 @@ typedef struct weft_table_texture {
 
 /* The texels are packed into words of 32 bits, four a layer: what they share with their neighbours in memory is what
  * one fetch brings. Layer 0: the rotation from the axes of the surface to those of the texel, as a unit quaternion of
- * signed 16-bit fractions (x, y; z, w), and the diffuse term and the ceiling in half floats (r, g; b, ceiling). Layer 1 + i: lobes 2i and 2i +
- * 1, counted 3 lobe + channel, as half floats (Cx, Cy; Cz, N). */
+ * signed 16-bit fractions (x, y; z, w), and the diffuse term and the ceiling in half floats (r, g; b, ceiling). Layer 1
+ * + i: lobes 2i and 2i + 1, counted 3 lobe + channel, as half floats (Cx, Cy; Cz, N). */
 typedef struct weft_material_texture {
     GLuint texel;
     weft_table_texture table, light_table;

@@ -12,7 +12,7 @@ typedef weft_code weft_scene_measure(weft_player *player, const weft_scene *scen
                                      char text[WEFT_NOTE_SIZE], weft_error *error);
 
 typedef struct weft_application_setup {
-    weft_settings *settings; /* what is shown first; its size is that of the window, in screen coordinates */
+    weft_settings *settings;     /* what is shown first; its size is that of the window, in screen coordinates */
     long frame_limit;            /* 0: until the window is closed */
     weft_scene_measure *measure; /* of a picture that rests */
     weft_log log;                /* hears what the user is told of files and devices */
@@ -20,8 +20,8 @@ typedef struct weft_application_setup {
 
 typedef struct weft_application weft_application;
 
-/* Begins to read the files that the settings name, which must live on, and opens the window, whose context is current from then
- * on. Errors: WEFT_SYSTEM. The caller frees with weft_application_free. */
+/* Begins to read the files that the settings name, which must live on, and opens the window, whose context is current
+ * from then on. Errors: WEFT_SYSTEM. The caller frees with weft_application_free. */
 weft_code weft_application_create(const weft_application_setup *setup, weft_application **result, weft_error *error);
 void weft_application_free(weft_application *application);
 

@@ -28,7 +28,8 @@ typedef struct adversary_limits {
 weft_code adversary_write(const adversary *one, const char *path, adversary_limits *limits);
 
 /* The largest value of level 0 over `trials` random lights and views, anywhere above the horizon, as a share of what
- * its samples allow the texel (compress/texel/texel.h); infinite where one is not finite or negative. Errors: those of weft_table_directions_create. */
+ * its samples allow the texel (compress/texel/texel.h); infinite where one is not finite or negative. Errors: those of
+ * weft_table_directions_create. */
 weft_code adversary_largest_share(const weft_material *material, const adversary_limits *limits, uint64_t seed,
                                   long trials, double *share, weft_error *error);
 

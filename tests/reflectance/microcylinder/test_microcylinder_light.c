@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-/* Light that comes from everywhere takes its time: every third row is tested, and every one where the argument "all" asks for
- * it. Single precision, which shares the formulas, is held to every sixth of both. */
+/* Light that comes from everywhere takes its time: every third row is tested, and every one where the argument "all"
+ * asks for it. Single precision, which shares the formulas, is held to every sixth of both. */
 enum {
     ENVIRONMENT_ROWS = 204,
     TABLE_ROWS = 204,
