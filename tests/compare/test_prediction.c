@@ -168,7 +168,7 @@ static void size_is_that_of_all_texels(void **state)
 }
 
 /* All texels are in the prediction, too: it holds to the length of the metadata. */
-static void components_are_chosen_by_size_and_by_error(void **state)
+static void components_are_chosen_by_size(void **state)
 {
     (void)state;
     weft_dataset *dataset;
@@ -176,7 +176,7 @@ static void components_are_chosen_by_size_and_by_error(void **state)
     fixture_far_dataset(path, 16, 12, 4, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     weft_compress_options options = weft_compress_default_options();
-    weft_component_count of_size, of_error;
+    weft_component_count of_size;
     expect_ok(weft_components_for_size(dataset, &options, 1, scratch, NULL, &of_size, &error), &error);
     assert_true(!of_size.is_met && of_size.count == 4);
     uint64_t budget = (uint64_t)(1.5 * of_size.bytes);
@@ -188,10 +188,22 @@ static void components_are_chosen_by_size_and_by_error(void **state)
     double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
     print_message("%d components: predicted %.0f bytes, is %.0f\n", of_size.count, of_size.bytes, bytes);
     assert_float_equal(of_size.bytes, bytes, 0.02 * bytes);
-    expect_ok(weft_components_for_error(dataset, &options, 0.9, 1, scratch, NULL, &of_error, &error), &error);
-    assert_true(of_error.is_met && of_error.count == 4 && of_error.held_out.split_count == 1);
-    expect_ok(weft_components_for_error(dataset, &options, 1e-6, 1, scratch, NULL, &of_error, &error), &error);
-    assert_true(!of_error.is_met && of_error.held_out.material.all.relative_rmse > 1e-6);
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
+/* One that cannot be met is asked for in the test of the command, of fewer images. */
+static void components_are_chosen_by_error(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_error error = {0};
+    weft_component_count chosen;
+    weft_compress_options options = weft_compress_default_options();
+    fixture_far_dataset(path, 3, 2, 4, noisy, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_components_for_error(dataset, &options, 0.9, 1, scratch, NULL, &chosen, &error), &error);
+    assert_true(chosen.is_met && chosen.count == 4 && chosen.held_out.split_count == 1);
     weft_dataset_close(dataset);
     unlink(path);
 }
@@ -203,7 +215,8 @@ int test_prediction(void)
         cmocka_unit_test(a_prediction_keeps_to_the_memory_that_is_allowed),
         cmocka_unit_test(a_preset_predicts_size_and_error),
         cmocka_unit_test(size_is_that_of_all_texels),
-        cmocka_unit_test(components_are_chosen_by_size_and_by_error),
+        cmocka_unit_test(components_are_chosen_by_size),
+        cmocka_unit_test(components_are_chosen_by_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
