@@ -177,9 +177,22 @@ void weft_sync_folder_of(const char *path)
     sync_path(folder, O_RDONLY | O_DIRECTORY);
 }
 
+/* A file that is replaced keeps its permissions and, where the system lets us, its owner. A new one has what the umask
+ * of its writer left. Not every file system has permissions: then nothing is lost. */
+static void keep_permissions(const weft_atomic_file *file)
+{
+    struct stat before;
+    if (stat(file->final_path, &before) != 0)
+        return;
+    bool is_owned = chown(file->temporary_path, before.st_uid, before.st_gid) == 0;
+    mode_t others = is_owned ? 0 : S_ISUID | S_ISGID;
+    (void)!chmod(file->temporary_path, before.st_mode & 07777 & ~others);
+}
+
 weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error)
 {
     weft_code code = WEFT_OK;
+    keep_permissions(file);
     if (sync_path(file->temporary_path, O_RDONLY) != 0 || rename(file->temporary_path, file->final_path) != 0) {
         code = weft_fail_errno(error, "write", file->final_path);
         unlink(file->temporary_path);

@@ -26,8 +26,8 @@ weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_
 /* Whether a file could be begun there: one is, and goes away again. Errors: as above. */
 weft_code weft_output_check(const char *path, weft_error *error);
 
-/* Syncs the temporary file to disk, renames it to its final name and syncs the folder. On failure the
- * temporary file is removed and the final one is as it was. Frees `file` either way. */
+/* Syncs the temporary file to disk, renames it to its final name and syncs the folder. A file that is replaced keeps
+ * its permissions. On failure the temporary file is removed and the final one is as it was. Frees `file` either way. */
 weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error);
 
 /* Removes the temporary file, if it exists, and frees `file`. Harmless after commit. */

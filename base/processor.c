@@ -1,9 +1,12 @@
 #include "base/processor.h"
 
+#include <stdatomic.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #if defined(__x86_64__)
+#include <cpuid.h>
 #include <immintrin.h>
 #endif
 
@@ -13,16 +16,45 @@ const char *weft_instruction_set_name(weft_instruction_set set)
     return name[set];
 }
 
+weft_instruction_set weft_instruction_set_of(unsigned flags)
+{
+    const unsigned avx2 = WEFT_HAS_AVX2 | WEFT_HAS_FMA | WEFT_HAS_F16C, avx512 = avx2 | WEFT_HAS_AVX512;
+    return (flags & avx512) == avx512 ? WEFT_AVX512 : (flags & avx2) == avx2 ? WEFT_AVX2 : WEFT_BASELINE;
+}
+
+#if defined(__x86_64__)
+
+/* Of the first leaf of CPUID: not every compiler's __builtin_cpu_supports knows it. */
+static bool has_f16c(void)
+{
+    unsigned a, b, c, d;
+    return __get_cpuid(1, &a, &b, &c, &d) && (c & bit_F16C);
+}
+
+/* The compiler's own checks ask the system, too, whether it keeps the registers. */
+static unsigned find_flags(void)
+{
+    unsigned flags = 0;
+    flags |= __builtin_cpu_supports("avx2") ? WEFT_HAS_AVX2 : 0;
+    flags |= __builtin_cpu_supports("fma") ? WEFT_HAS_FMA : 0;
+    flags |= has_f16c() ? WEFT_HAS_F16C : 0;
+    bool is_v4 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                 __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    return flags | (is_v4 ? WEFT_HAS_AVX512 : 0);
+}
+
+#else
+
+static unsigned find_flags(void)
+{
+    return 0;
+}
+
+#endif
+
 weft_instruction_set weft_processor_best(void)
 {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
-        return WEFT_AVX512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return WEFT_AVX2;
-#endif
-    return WEFT_BASELINE;
+    return weft_instruction_set_of(find_flags());
 }
 
 /* The set of a name, WEFT_INSTRUCTION_SETS for none. */
@@ -34,11 +66,24 @@ static weft_instruction_set set_of_name(const char *name)
     return (weft_instruction_set)set;
 }
 
+/* The set in use plus one; 0 until it is asked for. */
+static atomic_int in_use;
+
+void weft_processor_limit(weft_instruction_set most)
+{
+    weft_instruction_set best = weft_processor_best();
+    atomic_store_explicit(&in_use, 1 + (int)(most < best ? most : best), memory_order_relaxed);
+}
+
 weft_instruction_set weft_processor_instruction_set(void)
 {
-    const char *wanted = getenv("WEFT_ISA");
-    weft_instruction_set best = weft_processor_best(), set = wanted ? set_of_name(wanted) : best;
-    return set < best ? set : best;
+    int set = atomic_load_explicit(&in_use, memory_order_relaxed);
+    if (set == 0) {
+        const char *wanted = getenv("WEFT_ISA");
+        weft_processor_limit(wanted ? set_of_name(wanted) : WEFT_INSTRUCTION_SETS);
+        set = atomic_load_explicit(&in_use, memory_order_relaxed);
+    }
+    return (weft_instruction_set)(set - 1);
 }
 
 weft_code weft_processor_check(weft_error *error)

@@ -12,17 +12,49 @@ typedef enum weft_instruction_set {
     WEFT_INSTRUCTION_SETS
 } weft_instruction_set;
 
+/* What a processor has; WEFT_HAS_AVX512 is F, BW, DQ and VL together. */
+enum { WEFT_HAS_AVX2 = 1, WEFT_HAS_FMA = 2, WEFT_HAS_F16C = 4, WEFT_HAS_AVX512 = 8 };
+
 /* "baseline", "avx2", "avx512". Pure. */
 const char *weft_instruction_set_name(weft_instruction_set set);
 
-/* The best that this processor and this build have. Pure. */
+/* The best set of a processor with these flags. Pure. */
+weft_instruction_set weft_instruction_set_of(unsigned flags);
+
+/* The best set of this processor. Pure. */
 weft_instruction_set weft_processor_best(void);
 
-/* The one in use: the best, or what the environment variable WEFT_ISA names where that is available. Thread-safe. */
+/* The one in use, found once: the best, or what the environment variable WEFT_ISA names where that is available.
+ * Thread-safe. */
 weft_instruction_set weft_processor_instruction_set(void);
+
+/* From now on the best that is no better than `most`, whatever WEFT_ISA says: for tests and benches, which compare
+ * sets. Thread-safe. */
+void weft_processor_limit(weft_instruction_set most);
 
 /* Errors: WEFT_BAD_USAGE where WEFT_ISA names no instruction set, or one that this processor lacks. */
 weft_code weft_processor_check(weft_error *error);
+
+/* The kernel NAME of the set in use: NAME_baseline, NAME_avx2 or NAME_avx512, which are compiled of one source (see
+ * base/lanes.h). NAME may begin with `&`: a table of functions. */
+#if defined(__x86_64__)
+#define WEFT_DISPATCH(name)                                                                                            \
+    (weft_processor_instruction_set() == WEFT_AVX512 ? name##_avx512                                                   \
+     : weft_processor_instruction_set() == WEFT_AVX2 ? name##_avx2                                                     \
+                                                     : name##_baseline)
+#else
+#define WEFT_DISPATCH(name) (name##_baseline)
+#endif
+
+/* DECLARE(set) for each set that there are kernels of. */
+#if defined(__x86_64__)
+#define WEFT_FOR_EACH_SET(DECLARE)                                                                                     \
+    DECLARE(baseline);                                                                                                 \
+    DECLARE(avx2);                                                                                                     \
+    DECLARE(avx512)
+#else
+#define WEFT_FOR_EACH_SET(DECLARE) DECLARE(baseline)
+#endif
 
 /* Denormal floats cost a hundred cycles each and mean nothing in a fit: from here on this thread takes them for 0.
  * Returns the state to restore. */

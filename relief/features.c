@@ -17,18 +17,6 @@ typedef struct reading {
     weft_feature_project *project;
 } reading;
 
-static weft_feature_project *best_kernel(void)
-{
-#if defined(__x86_64__)
-    weft_instruction_set set = weft_processor_instruction_set();
-    if (set == WEFT_AVX512)
-        return weft_feature_project_avx512;
-    if (set == WEFT_AVX2)
-        return weft_feature_project_avx2;
-#endif
-    return weft_feature_project_baseline;
-}
-
 static void read_texel(const reading *r, const weft_walk_block *block, int i, float *value)
 {
     const weft_features *features = r->features;
@@ -82,7 +70,7 @@ static weft_code read_all(weft_dataset *dataset, const weft_relief_views *views,
                  .components = &components,
                  .features = features,
                  .images = (size_t)weft_dataset_get_layout(dataset)->image_count,
-                 .project = best_kernel()};
+                 .project = WEFT_DISPATCH(weft_feature_project)};
     weft_code code = allocate(features, error);
     if (code == WEFT_OK)
         code = weft_walk_blocks(dataset, read_block, &r, "reading photographs", progress, error);

@@ -3,6 +3,7 @@
 #ifndef WEFT_RELIEF_FEATURES_H
 #define WEFT_RELIEF_FEATURES_H
 
+#include "base/processor.h"
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "relief/views.h"
@@ -58,10 +59,6 @@ typedef void weft_feature_project(const float *value, const float *component, in
 
 #define WEFT_DECLARE_FEATURE_KERNEL(set) weft_feature_project weft_feature_project_##set
 
-WEFT_DECLARE_FEATURE_KERNEL(baseline);
-#if defined(__x86_64__)
-WEFT_DECLARE_FEATURE_KERNEL(avx2);
-WEFT_DECLARE_FEATURE_KERNEL(avx512);
-#endif
+WEFT_FOR_EACH_SET(WEFT_DECLARE_FEATURE_KERNEL);
 
 #endif

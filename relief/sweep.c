@@ -4,18 +4,6 @@
 
 #include <math.h>
 
-static weft_sweep_kernel *best_kernel(void)
-{
-#if defined(__x86_64__)
-    weft_instruction_set set = weft_processor_instruction_set();
-    if (set == WEFT_AVX512)
-        return weft_sweep_row_avx512;
-    if (set == WEFT_AVX2)
-        return weft_sweep_row_avx2;
-#endif
-    return weft_sweep_row_baseline;
-}
-
 /* Into [0, count). */
 static double wrapped(double x, int count)
 {
@@ -53,7 +41,7 @@ static void place_views(const weft_sweep *sweep, int y, double height, weft_swee
 void weft_sweep_run(const weft_sweep *sweep, float *cost)
 {
     const weft_features *features = sweep->features;
-    weft_sweep_kernel *kernel = best_kernel();
+    weft_sweep_kernel *kernel = WEFT_DISPATCH(weft_sweep_row);
     size_t width = (size_t)features->width * (size_t)sweep->scale;
     int height = features->height * sweep->scale;
 #pragma omp parallel for schedule(dynamic)

@@ -10,6 +10,7 @@
 #ifndef WEFT_RELIEF_SWEEP_H
 #define WEFT_RELIEF_SWEEP_H
 
+#include "base/processor.h"
 #include "relief/features.h"
 
 #define WEFT_SWEEP_SIGMA_SQUARED 0.15f
@@ -45,10 +46,6 @@ typedef void weft_sweep_kernel(const weft_sweep_row *row, float *cost);
 
 #define WEFT_DECLARE_SWEEP_KERNEL(set) weft_sweep_kernel weft_sweep_row_##set
 
-WEFT_DECLARE_SWEEP_KERNEL(baseline);
-#if defined(__x86_64__)
-WEFT_DECLARE_SWEEP_KERNEL(avx2);
-WEFT_DECLARE_SWEEP_KERNEL(avx512);
-#endif
+WEFT_FOR_EACH_SET(WEFT_DECLARE_SWEEP_KERNEL);
 
 #endif

@@ -5,20 +5,12 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* One run of the fast fit for each instruction set, texel by texel. */
 typedef struct set_series {
     bench with;
     double *microseconds, *ratio, *rmse, *difference; /* ratio and difference: to the best set */
 } set_series;
-
-static weft_code use(weft_instruction_set set, weft_error *error)
-{
-    if (setenv("WEFT_ISA", weft_instruction_set_name(set), 1))
-        return weft_fail_memory(error, "WEFT_ISA", 16);
-    return weft_processor_check(error);
-}
 
 static weft_code create_all(const bench_plan *plan, texel_source *source, set_series *all, weft_error *error)
 {
@@ -33,7 +25,7 @@ static weft_code create_all(const bench_plan *plan, texel_source *source, set_se
         all[set].ratio = memory + n;
         all[set].rmse = memory + 2 * n;
         all[set].difference = memory + 3 * n;
-        WEFT_TRY(use(set, error));
+        weft_processor_limit(set);
         WEFT_TRY(bench_create(source, &options, &all[set].with, error));
     }
     return WEFT_OK;
@@ -48,19 +40,18 @@ static void free_all(set_series *all)
 }
 
 /* The best set first, then the others against it. */
-static weft_code measure(const texel_source *source, int texel, set_series *all, weft_error *error)
+static void measure(const texel_source *source, int texel, set_series *all)
 {
     int channel = texel % WEFT_CHANNELS;
     weft_instruction_set best = weft_processor_best();
     for (int set = (int)best; set >= WEFT_BASELINE; set--) {
-        WEFT_TRY(use((weft_instruction_set)set, error));
+        weft_processor_limit((weft_instruction_set)set);
         outcome one = method_run(&all[set].with, METHOD_FAST, channel);
         all[set].microseconds[texel] = one.microseconds;
         all[set].rmse[texel] = relative_rmse(one.residual, source->samples.energy[channel]);
         all[set].ratio[texel] = one.microseconds / all[best].microseconds[texel];
         all[set].difference[texel] = fabs(all[set].rmse[texel] - all[best].rmse[texel]);
     }
-    return WEFT_OK;
 }
 
 static void add_table(const bench_plan *plan, const texel_source *source, const set_series *all)
@@ -81,21 +72,16 @@ static void add_table(const bench_plan *plan, const texel_source *source, const 
 weft_code section_instruction_sets(const bench_plan *plan, texel_source *source, weft_error *error)
 {
     set_series all[WEFT_INSTRUCTION_SETS] = {0};
-    const char *before = getenv("WEFT_ISA");
-    char *kept = before ? strdup(before) : NULL;
+    weft_instruction_set before = weft_processor_instruction_set();
     weft_code code = create_all(plan, source, all, error);
     for (int i = 0; code == WEFT_OK && i < plan->texel_count; i++) {
         code = texel_source_load(source, i, plan->texel_count, false, error);
         if (code == WEFT_OK)
-            code = measure(source, i, all, error);
+            measure(source, i, all);
     }
     if (code == WEFT_OK)
         add_table(plan, source, all);
     free_all(all);
-    if (kept)
-        setenv("WEFT_ISA", kept, 1);
-    else
-        unsetenv("WEFT_ISA");
-    free(kept);
+    weft_processor_limit(before);
     return code;
 }

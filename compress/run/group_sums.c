@@ -5,23 +5,11 @@
 
 #include <string.h>
 
-WEFT_DECLARE_GROUP_KERNELS(baseline);
-#if defined(__x86_64__)
-WEFT_DECLARE_GROUP_KERNELS(avx2);
-WEFT_DECLARE_GROUP_KERNELS(avx512);
-#endif
+WEFT_FOR_EACH_SET(WEFT_DECLARE_GROUP_KERNELS);
 
 static void convert(const weft_half *half, size_t count, float *result)
 {
-#if defined(__x86_64__)
-    weft_instruction_set set = weft_processor_instruction_set();
-    if (set == WEFT_AVX512)
-        weft_group_convert_avx512(half, count, result);
-    else if (set == WEFT_AVX2)
-        weft_group_convert_avx2(half, count, result);
-    else
-#endif
-        weft_group_convert_baseline(half, count, result);
+    WEFT_DISPATCH(weft_group_convert)(half, count, result);
 }
 
 /* Forgets the samples that do not count. */
@@ -54,13 +42,5 @@ long weft_group_of_texel(const weft_half *samples, const uint8_t *mask, const ui
 
 void weft_group_add(const float *from, size_t image_count, float *to)
 {
-#if defined(__x86_64__)
-    weft_instruction_set set = weft_processor_instruction_set();
-    if (set == WEFT_AVX512)
-        weft_group_accumulate_avx512(from, 4 * image_count, to);
-    else if (set == WEFT_AVX2)
-        weft_group_accumulate_avx2(from, 4 * image_count, to);
-    else
-#endif
-        weft_group_accumulate_baseline(from, 4 * image_count, to);
+    WEFT_DISPATCH(weft_group_accumulate)(from, 4 * image_count, to);
 }

@@ -16,17 +16,6 @@ typedef struct scratch {
 
 enum { ALIGNMENT = 64, VALUES = WEFT_BONN_GROUP * WEFT_BONN_BLOCK };
 
-static const weft_bonn_kernels *choose_kernels(void)
-{
-#if defined(__x86_64__)
-    static const weft_bonn_kernels *const all[WEFT_INSTRUCTION_SETS] = {
-        &weft_bonn_kernels_baseline, &weft_bonn_kernels_avx2, &weft_bonn_kernels_avx512};
-    return all[weft_processor_instruction_set()];
-#else
-    return &weft_bonn_kernels_baseline;
-#endif
-}
-
 int weft_bonn_group_size(const weft_bonn_file *file)
 {
     const size_t most_bytes = (size_t)64 << 20;
@@ -40,7 +29,7 @@ static weft_code create_scratch(const weft_bonn_file *file, scratch *with, weft_
     for (int c = 0; c < WEFT_BONN_CHANNELS; c++)
         components = (size_t)weft_larger((int)components, file->matrices.channel[c].component_count);
     size_t bytes = components * WEFT_BONN_BLOCK * sizeof *with->texels;
-    *with = (scratch){.kernels = choose_kernels(),
+    *with = (scratch){.kernels = WEFT_DISPATCH(&weft_bonn_kernels),
                       .texels = aligned_alloc(ALIGNMENT, bytes),
                       .values = aligned_alloc(ALIGNMENT, WEFT_BONN_CHANNELS * VALUES * sizeof *with->values)};
     return with->texels && with->values ? WEFT_OK : weft_fail_memory(error, "block of texels", bytes);

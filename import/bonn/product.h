@@ -3,6 +3,7 @@
 #ifndef WEFT_IMPORT_BONN_PRODUCT_H
 #define WEFT_IMPORT_BONN_PRODUCT_H
 
+#include "base/processor.h"
 #include "import/bonn/matrix.h"
 
 /* Images whose products are added up together; there is a place for as many in `values`. */
@@ -19,10 +20,6 @@ typedef struct weft_bonn_kernels {
 #define WEFT_DECLARE_BONN_KERNELS(set) extern const weft_bonn_kernels weft_bonn_kernels_##set
 #define WEFT_DECLARE_BONN_KERNELS_OF(set) WEFT_DECLARE_BONN_KERNELS(set)
 
-WEFT_DECLARE_BONN_KERNELS(baseline);
-#if defined(__x86_64__)
-WEFT_DECLARE_BONN_KERNELS(avx2);
-WEFT_DECLARE_BONN_KERNELS(avx512);
-#endif
+WEFT_FOR_EACH_SET(WEFT_DECLARE_BONN_KERNELS);
 
 #endif

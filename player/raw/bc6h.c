@@ -8,19 +8,6 @@
 
 enum { TEXELS = WEFT_BC6H_TEXELS, BATCH = WEFT_BC6H_BATCH };
 
-typedef void fit_function(weft_bc6h_batch *batch);
-
-static fit_function *choose_kernel(void)
-{
-#if defined(__x86_64__)
-    static fit_function *const kernel[WEFT_INSTRUCTION_SETS] = {weft_bc6h_fit_baseline, weft_bc6h_fit_avx2,
-                                                                weft_bc6h_fit_avx512};
-    return kernel[weft_processor_instruction_set()];
-#else
-    return weft_bc6h_fit_baseline;
-#endif
-}
-
 /* ---- Bits of a block ---- */
 
 /* The low ten bits of one end stand together; the other end is a difference, and the bits of the first above ten follow
@@ -66,13 +53,12 @@ static void load(const float *const texel[TEXELS][3], int first, int count, weft
 
 void weft_bc6h_encode(const float *const texel[TEXELS][3], int count, uint8_t *result, int stride)
 {
-    fit_function *fit = choose_kernel();
     weft_bc6h_batch batch;
     memset(batch.value, 0, sizeof batch.value);
     for (int first = 0; first < count; first += BATCH) {
         int here = count - first < BATCH ? count - first : BATCH;
         load(texel, first, here, &batch);
-        fit(&batch);
+        WEFT_DISPATCH(weft_bc6h_fit)(&batch);
         for (int k = 0; k < here; k++)
             pack(&batch, k, result + (size_t)(first + k) * (size_t)stride);
     }

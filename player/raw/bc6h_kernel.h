@@ -2,6 +2,7 @@
 #ifndef WEFT_PLAYER_RAW_BC6H_KERNEL_H
 #define WEFT_PLAYER_RAW_BC6H_KERNEL_H
 
+#include "base/processor.h"
 #include "player/raw/bc6h.h"
 
 enum { WEFT_BC6H_BATCH = 16 }; /* blocks; a multiple of the lanes of every instruction set */
@@ -22,10 +23,6 @@ static const int32_t weft_bc6h_reach[WEFT_BC6H_MODES] = {1023, 255, 127, 7};
 
 #define WEFT_DECLARE_BC6H_KERNEL(set) void weft_bc6h_fit_##set(weft_bc6h_batch *batch)
 
-WEFT_DECLARE_BC6H_KERNEL(baseline);
-#if defined(__x86_64__)
-WEFT_DECLARE_BC6H_KERNEL(avx2);
-WEFT_DECLARE_BC6H_KERNEL(avx512);
-#endif
+WEFT_FOR_EACH_SET(WEFT_DECLARE_BC6H_KERNEL);
 
 #endif

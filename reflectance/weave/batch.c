@@ -5,24 +5,6 @@
 
 #include <stdlib.h>
 
-typedef struct woven_kernels {
-    void (*texture)(const weft_woven_table *table, weft_weave_batch *batch);
-    void (*reflectance)(const weft_prepared_segment *prepared, int count, const weft_vec3 *light, const weft_vec3 *view,
-                        weft_real *value);
-} woven_kernels;
-
-static woven_kernels kernels_in_use(void)
-{
-#if defined(__x86_64__)
-    weft_instruction_set set = weft_processor_instruction_set();
-    if (set == WEFT_AVX512)
-        return (woven_kernels){weft_woven_texture_avx512, weft_woven_reflectance_avx512};
-    if (set == WEFT_AVX2)
-        return (woven_kernels){weft_woven_texture_avx2, weft_woven_reflectance_avx2};
-#endif
-    return (woven_kernels){weft_woven_texture_baseline, weft_woven_reflectance_baseline};
-}
-
 /* ---- Texture ---- */
 
 static void fill_row(const weft_yarn *yarn, float *const column[WEFT_WOVEN_COLUMNS], int row)
@@ -97,7 +79,7 @@ static void pad(weft_weave_batch *batch)
 void weft_weave_specular_batch(const weft_woven_table *table, weft_weave_batch *batch)
 {
     pad(batch);
-    kernels_in_use().texture(table, batch);
+    WEFT_DISPATCH(weft_woven_texture)(table, batch);
 }
 
 /* ---- Reflectance ---- */
@@ -105,7 +87,7 @@ void weft_weave_specular_batch(const weft_woven_table *table, weft_weave_batch *
 void weft_prepared_reflectance_batch(const weft_prepared_segment *prepared, int count, const weft_vec3 *light,
                                      const weft_vec3 *view, weft_real *value)
 {
-    kernels_in_use().reflectance(prepared, count, light, view, value);
+    WEFT_DISPATCH(weft_woven_reflectance)(prepared, count, light, view, value);
 }
 
 /* The frame of weft segments is turned a quarter. */
@@ -127,14 +109,14 @@ static void sum_shares(const weft_weave *weave, weft_real *share)
 static void add_yarns(const weft_weave *weave, int count, const weft_real *share,
                       const weft_vec3 *const direction[2][2], weft_real *of_yarn, weft_real *value)
 {
-    woven_kernels kernels = kernels_in_use();
     for (int i = 0; i < count; i++)
         value[i] = 0;
     for (int k = 0; k < weave->yarn_count; k++) {
         int turned = !weave->yarn[k].warp;
         if (!(share[k] > 0))
             continue;
-        kernels.reflectance(&weave->yarn[k].prepared, count, direction[turned][0], direction[turned][1], of_yarn);
+        WEFT_DISPATCH(weft_woven_reflectance)
+        (&weave->yarn[k].prepared, count, direction[turned][0], direction[turned][1], of_yarn);
         for (int i = 0; i < count; i++)
             value[i] += share[k] * of_yarn[i];
     }

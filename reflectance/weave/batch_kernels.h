@@ -2,6 +2,7 @@
 #ifndef WEFT_REFLECTANCE_WEAVE_BATCH_KERNELS_H
 #define WEFT_REFLECTANCE_WEAVE_BATCH_KERNELS_H
 
+#include "base/processor.h"
 #include "reflectance/weave/batch.h"
 
 /* What the texture of a yarn depends on. Kinds are columns of one. */
@@ -36,10 +37,6 @@ struct weft_woven_table {
     void weft_woven_reflectance_##set(const weft_prepared_segment *prepared, int count, const weft_vec3 *light,        \
                                       const weft_vec3 *view, weft_real *value)
 
-WEFT_DECLARE_WOVEN_KERNELS(baseline);
-#if defined(__x86_64__)
-WEFT_DECLARE_WOVEN_KERNELS(avx2);
-WEFT_DECLARE_WOVEN_KERNELS(avx512);
-#endif
+WEFT_FOR_EACH_SET(WEFT_DECLARE_WOVEN_KERNELS);
 
 #endif

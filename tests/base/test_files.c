@@ -98,6 +98,30 @@ static void full_disk_leaves_the_old_file_and_no_other(void **state)
     free(bytes);
 }
 
+static mode_t mode_of(const char *path)
+{
+    struct stat status;
+    assert_int_equal(stat(path, &status), 0);
+    return status.st_mode & 07777;
+}
+
+static void a_replaced_file_keeps_its_permissions(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    mode_t before = umask(027);
+    assert_int_equal(weft_write_file("own.bin", "new", 3, &error), WEFT_OK);
+    assert_int_equal(mode_of("own.bin"), 0640);
+    static const mode_t modes[] = {0600, 0664, 0666, 0444, 0755};
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+        assert_int_equal(chmod("own.bin", modes[i]), 0);
+        assert_int_equal(weft_write_file("own.bin", "again", 5, &error), WEFT_OK);
+        assert_int_equal(mode_of("own.bin"), modes[i]);
+    }
+    umask(before);
+    assert_int_equal(unlink("own.bin"), 0);
+}
+
 static void impossible_places_are_named(void **state)
 {
     (void)state;
@@ -273,6 +297,7 @@ int test_files(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_disk_leaves_the_old_file_and_no_other),
+        cmocka_unit_test(a_replaced_file_keeps_its_permissions),
         cmocka_unit_test(impossible_places_are_named),
         cmocka_unit_test(a_pipe_or_device_is_not_replaced_by_a_file),
         cmocka_unit_test(a_link_stays_and_what_it_points_to_is_replaced),

@@ -180,14 +180,14 @@ static void denormals_off_lose_no_sample(void **state)
     for (size_t i = 0; i < 3 * FINITE_HALVES; i++)
         samples[i] = (weft_half)(i % FINITE_HALVES);
     for (int set = 0; set <= (int)weft_processor_best(); set++) {
-        setenv("WEFT_ISA", weft_instruction_set_name((weft_instruction_set)set), 1);
+        weft_processor_limit((weft_instruction_set)set);
         unsigned before = weft_denormals_off();
         weft_group_of_texel(samples, mask, NULL, FINITE_HALVES, group);
         weft_denormals_restore(before);
         for (size_t i = 0; i < 3 * FINITE_HALVES; i++)
             assert_true(group[i] == weft_float_of_half(samples[i]));
     }
-    unsetenv("WEFT_ISA");
+    weft_processor_limit(WEFT_INSTRUCTION_SETS);
 }
 
 /* ---- Threads ---- */

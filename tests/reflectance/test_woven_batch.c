@@ -239,12 +239,12 @@ static void every_instruction_set_gives_the_same_within_rounding(void **state)
         view[i] = direction(&random, false);
     }
     for (int set = 0; set <= (int)weft_processor_best(); set++) {
-        setenv("WEFT_ISA", weft_instruction_set_name((weft_instruction_set)set), 1);
+        weft_processor_limit((weft_instruction_set)set);
         weft_prepared_reflectance_batch(&prepared, PAIRS, light, view, value[set]);
         for (int i = 0; i < PAIRS; i++)
             assert_float_equal(value[set][i], value[0][i], 1e-4 * value[0][i]);
     }
-    unsetenv("WEFT_ISA");
+    weft_processor_limit(WEFT_INSTRUCTION_SETS);
 }
 
 static void a_scale_is_near_and_its_changes_are_nearer(void **state)

@@ -214,12 +214,12 @@ static void every_instruction_set_finds_blocks_as_good(void **state)
 {
     (void)state;
     for (int set = 0; set <= (int)weft_processor_best(); set++) {
-        setenv("WEFT_ISA", weft_instruction_set_name((weft_instruction_set)set), 1);
+        weft_processor_limit((weft_instruction_set)set);
         a_block_of_one_colour_comes_out_exact(state);
         every_mode_is_chosen_where_it_is_the_finest_that_reaches(state);
         noise_stays_within_what_one_line_holds(state);
     }
-    unsetenv("WEFT_ISA");
+    weft_processor_limit(WEFT_INSTRUCTION_SETS);
 }
 
 /* ---- The driver's decoder ---- */
