@@ -63,14 +63,6 @@ static void view_section(weft_interaction *i)
 
 /* ---- Light ---- */
 
-void weft_panel_place(weft_vec3 direction, double x, double y, double radius, double *at_x, double *at_y)
-{
-    double across = hypot((double)direction.x, (double)direction.y);
-    double r = radius * sqrt(fmax(0, 1 - fabs((double)direction.z))), scale = across > 0 ? r / across : 0;
-    *at_x = x + radius + (double)direction.x * scale;
-    *at_y = y + radius - (double)direction.y * scale;
-}
-
 static void drag_on_map(weft_light *light, const weft_ui_area *area, double radius)
 {
     double x = (area->pointer_x - area->x - radius) / radius, y = (area->y + radius - area->pointer_y) / radius;

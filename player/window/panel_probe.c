@@ -5,6 +5,14 @@
 #include <math.h>
 #include <stdio.h>
 
+void weft_panel_place(weft_vec3 direction, double x, double y, double radius, double *at_x, double *at_y)
+{
+    double across = hypot((double)direction.x, (double)direction.y);
+    double r = radius * sqrt(fmax(0, 1 - fabs((double)direction.z))), scale = across > 0 ? r / across : 0;
+    *at_x = x + radius + (double)direction.x * scale;
+    *at_y = y + radius - (double)direction.y * scale;
+}
+
 static const uint32_t ink = 0xe6e6e3ff, faint = 0xffffff40;
 
 static double inclination_deg(weft_vec3 direction)
