@@ -124,8 +124,8 @@ static sample_error compare_samples(const collection *c, const collection *exact
     const weft_raw_tiles *tiles = &c->plan.tiles[WEFT_RAW_SAMPLES];
     for (int i = 0; i < c->strip_count; i++) {
         const weft_raw_strip *strip = &c->strip[i];
-        int blocks = (int)(strip->bytes / weft_raw_block_bytes(tiles->format)) / tiles->components;
-        for (int layer = 0; strip->part == WEFT_RAW_SAMPLES && layer < tiles->components; layer++) {
+        int blocks = (int)(strip->bytes / weft_raw_block_bytes(tiles->format)) / tiles->layers;
+        for (int layer = 0; strip->part == WEFT_RAW_SAMPLES && layer < tiles->layers; layer++) {
             for (int k = 0; k < blocks; k++) {
                 float value[TEXELS][3], wanted[TEXELS][3];
                 decode(tiles->format, strip->texels, layer, k, blocks * BLOCK, value);
