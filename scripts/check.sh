@@ -47,10 +47,10 @@ tidy() {
     git ls-files '*.c' ':!tests' ':!bench' | analyse
 }
 
-# As many as some minutes allow of the sources that changed in the last day of work, and of those that include a header that did: those that
+# As many as two minutes allow, or WEFT_TIDY_MINUTES, of the sources that changed in the last day of work, and of those that include a header that did: those that
 # changed last come first.
 tidy_changed() {
-    minutes=${WEFT_TIDY_MINUTES:-8}
+    minutes=${WEFT_TIDY_MINUTES:-2}
     last=$(git log -1 --format=%ct)
     base=$(git rev-list -1 --before="$((last - 86400))" HEAD)
     : "${base:=$(git rev-list --max-parents=0 HEAD | tail -n 1)}"
