@@ -294,6 +294,18 @@ static size_t index_of(size_t k, size_t texel)
     return (k / 4 * SIDE * SIDE + texel) * 4 + k % 4;
 }
 
+/* The step of the codes of a component: what they are multiples of. */
+static int step_of(const int8_t *code, size_t k)
+{
+    int step = 0;
+    for (size_t t = 0; t < SIDE * SIDE; t++)
+        for (int rest = abs(code[index_of(k, t)]), other; rest > 0; rest = other) {
+            other = step % rest;
+            step = rest;
+        }
+    return step;
+}
+
 /* The second half of the components is the first half in finer steps, of which 254 make one. What is stored has steps
  * of its own for each component, wherever the error of the fit hides them: it is the nearest of these to the finer
  * value. */
@@ -315,9 +327,10 @@ static void finer_components_hold_what_rounding_left(void **state)
             own += exact * exact;
             square += finer * finer / (SIDE * SIDE * COMPONENTS);
         }
+        double half_step = 0.5 * step_of(rounded, k);
         for (size_t t = 0; t < SIDE * SIDE; t++) {
             double exact = both[index_of(k, t)] + both[index_of(COMPONENTS + k, t)] / 254.0;
-            assert_float_equal(exact * product / own, rounded[index_of(k, t)], 0.75);
+            assert_float_equal(exact * product / own, rounded[index_of(k, t)], 1.5 * half_step);
         }
         assert_float_equal(fine.components->scale[COMPONENTS + k] * 254, fine.components->scale[k],
                            1e-6 * fine.components->scale[k]);
