@@ -45,7 +45,7 @@ PYTHON
 [ "$(ls -A report | tr '\n' ' ')" = "index.html sources.csv " ] || fail "something is left behind: $(ls -A report)"
 expect_page report
 [ "$(grep -o '<rect class="bar' report/index.html | wc -l)" = 8 ] || fail "there are not two stacks of four parts"
-for word in "Plain weave" "65 photographs" "8 × 8 texels" "fitted by 8 layers" "up to 35°"; do
+for word in "Plain weave" "65 photographs" "8 × 8 texels" "fitted by 8 components" "up to 35°"; do
     grep -q "$word" report/index.html || fail "the page does not say '$word'"
 done
 
