@@ -2,9 +2,8 @@
 #include "btf/session/camera_list.h"
 #include "cli/command/arguments.h"
 #include "cli/command/heights.h"
-#include "registration/outcome/lamp_drift.h"
 #include "registration/registration.h"
-#include "registration/report/tables.h"
+#include "registration/report/report.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -63,8 +62,8 @@ static void say_faults(const register_command *command, const weft_session *sess
 static weft_code say_outcome(const register_command *command, const weft_session *session, const weft_registration *r,
                              weft_error *error)
 {
-    weft_ring_summary all;
-    WEFT_TRY(weft_ring_summarise(session, r, -1, &all, error));
+    weft_registration_summary all;
+    WEFT_TRY(weft_registration_summarise(session, r, &all, error));
     say_faults(command, session, r);
     weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %d of %d viewpoints registered",
                      command->output, r->settings.width, r->settings.height, r->image_count, session->shot_count,
@@ -76,8 +75,8 @@ static weft_code say_outcome(const register_command *command, const weft_session
     if (r->found.bend.viewpoints > 0)
         weft_command_say(
             &command->common,
-            "taken out: a bend of the plate of %.3f mm at its rim (random error %.4f), vignetting beside the "
-            "calibration of %.2f %% (standard error %.2f)",
+            "corrected: the plate, bent by %.3f mm at its rim (random error %.4f), and vignetting of %.2f %% beside "
+            "the calibration (standard error %.2f)",
             weft_bend_depth_mm(&r->found.bend), r->found.bend.standard_error_mm,
             100 * weft_vignetting_loss(&r->found.vignetting), 100 * r->found.vignetting.standard_error);
     const weft_sensor_summary *sensor = &r->found.sensor;
@@ -94,14 +93,13 @@ static weft_code say_outcome(const register_command *command, const weft_session
                          sensor->dead);
     weft_lamp_drift drift = weft_lamp_drift_of(r);
     if (drift.viewpoints > 1)
-        weft_command_say(
-            &command->common,
-            "the lamp: %+.2f to %+.2f %% over %d viewpoints, by the white patches, taken out of each photograph",
-            100 * drift.lowest, 100 * drift.highest, drift.viewpoints);
+        weft_command_say(&command->common,
+                         "the lamp changed by %+.2f to %+.2f %% over %d viewpoints; each photograph is corrected by "
+                         "its white patches",
+                         100 * drift.lowest, 100 * drift.highest, drift.viewpoints);
     if (session->colour.terms > 0)
         weft_command_say(&command->common,
-                         "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "
-                         "the mean",
+                         "colours: linear sRGB; mean error of a held-out patch of the chart: %.2f CIEDE2000",
                          session->colour.left_out.mean);
     if (command->report_folder)
         weft_command_say_page(&command->common, "report", r->settings.report_folder);

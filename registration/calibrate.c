@@ -83,7 +83,7 @@ static weft_code locate(court *c, witness *w, weft_error *error)
     if (w->located)
         return WEFT_OK;
     WEFT_TRY(weft_pose_find(c->sight, &c->session->target, w->average, &promised, (weft_point_spread){0, 0}, limits,
-                            &pose, NULL, error));
+                            &pose, error));
     w->refinement.homography = pose.homography;
     w->located = pose.source == WEFT_POSE_DRAWING;
     return WEFT_OK;
@@ -110,7 +110,7 @@ static weft_code hear(court *c, weft_bend_evidence *sum, int *heard, weft_error 
         weft_bend_evidence own;
         if (!w->located)
             continue;
-        WEFT_TRY(weft_refinement_run(c->sight, w->average, 0, &w->refinement, NULL, error));
+        WEFT_TRY(weft_refinement_run(c->sight, w->average, 0, &w->refinement, error));
         if (!(w->refinement.correlation >= c->registration->settings.limits.least_correlation))
             continue;
         WEFT_TRY(weft_refinement_weigh_bend(c->sight, w->average, &w->refinement, &own, error));

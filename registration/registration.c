@@ -20,7 +20,7 @@ typedef struct work {
     weft_sight sight;
     const weft_progress *progress;
     weft_point_spread point_spread; /* of the last view that was refined: the lens is the same */
-    float *fitted, *shown;          /* for the report; NULL where there is none */
+    float *shown;                   /* for the report; NULL where there is none */
     long done;                      /* photographs */
 } work;
 
@@ -132,7 +132,7 @@ static weft_code find_and_rectify(work *w, int viewpoint, const weft_viewpoint_p
         weft_session_pose(session, registration->survey.view[registration->survey.viewpoint[viewpoint].view]);
     weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
     WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
-                            &registration->settings.limits, pose, w->fitted, error));
+                            &registration->settings.limits, pose, error));
     if (pose->source == WEFT_POSE_FAILED)
         return WEFT_OK;
     if (pose->source == WEFT_POSE_DRAWING)
@@ -153,9 +153,8 @@ static weft_code register_viewpoint(work *w, int viewpoint, weft_error *error)
     else
         snprintf(pose->remark, sizeof pose->remark, "none of its %d photographs can be used", photographs.count);
     if (code == WEFT_OK && registration->settings.report_folder) {
-        weft_report_pictures pictures = {photographs.average, pose->source == WEFT_POSE_DRAWING ? w->fitted : NULL,
-                                         registration->used[viewpoint] > 0 ? w->shown : NULL};
-        code = weft_report_write_pictures(registration, &w->sight, viewpoint, &pictures, error);
+        const float *texel = registration->used[viewpoint] > 0 ? w->shown : NULL;
+        code = weft_report_write_pictures(registration, &w->sight.camera, viewpoint, photographs.average, texel, error);
     }
     w->done += photographs.count;
     weft_viewpoint_photographs_free(&photographs);
@@ -175,8 +174,7 @@ static weft_code rectify_again(work *w, int viewpoint, const weft_white *estimat
     weft_viewpoint_photographs_free(&photographs);
     if (code != WEFT_OK || !unseen || registration->used[viewpoint] == 0)
         return code;
-    weft_report_pictures pictures = {NULL, NULL, w->shown};
-    return weft_report_write_pictures(registration, &w->sight, viewpoint, &pictures, error);
+    return weft_report_write_pictures(registration, &w->sight.camera, viewpoint, NULL, w->shown, error);
 }
 
 /* Once more through the viewpoints with photographs whose white level was not measured. */
@@ -241,14 +239,12 @@ static weft_code run(work *w, weft_error *error)
 static weft_code prepare_pictures(work *w, weft_error *error)
 {
     const weft_registration *registration = w->rectifier.registration;
-    size_t pixels = (size_t)w->sight.camera.width * (size_t)w->sight.camera.height;
     size_t values = (size_t)registration->settings.width * (size_t)registration->settings.height * 3;
     if (!registration->settings.report_folder)
         return WEFT_OK;
-    w->fitted = malloc(pixels * sizeof *w->fitted);
     w->shown = malloc(values * sizeof *w->shown);
-    if (!w->fitted || !w->shown)
-        return weft_fail_memory(error, "the report's pictures", (pixels + values) * sizeof(float));
+    if (!w->shown)
+        return weft_fail_memory(error, "the report's pictures", values * sizeof(float));
     return weft_report_prepare(registration->settings.report_folder, error);
 }
 
@@ -264,7 +260,6 @@ static weft_code look_and_run(work *w, const weft_session *session, weft_error *
     weft_code code = prepare_pictures(w, error);
     if (code == WEFT_OK)
         code = run(w, error);
-    free(w->fitted);
     free(w->shown);
     weft_sight_free(&w->sight);
     return code;

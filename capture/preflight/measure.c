@@ -148,7 +148,7 @@ static weft_code find_plate(const weft_session *session, const weft_sight *sight
     weft_homography homography = weft_homography_of_pose(&session->camera, &promised);
     grey_of(session, sight, samples, grey);
     weft_code code = weft_pose_find(sight, &session->target, grey, &homography, (weft_point_spread){0, 0}, &pose_limits,
-                                    pose, NULL, error);
+                                    pose, error);
     free(grey);
     return code;
 }

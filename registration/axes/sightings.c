@@ -46,7 +46,7 @@ static weft_code look(const work *w, const weft_viewpoint *viewpoint, const floa
     weft_homography homography = weft_homography_of_pose(&w->session->camera, &promised);
     weft_view_pose pose;
     WEFT_TRY(weft_pose_find(&w->sight, &w->session->target, photograph, &homography, (weft_point_spread){0, 0}, &limits,
-                            &pose, NULL, error));
+                            &pose, error));
     if (pose.source == WEFT_POSE_DRAWING)
         mark(w, &pose.homography, shot);
     else

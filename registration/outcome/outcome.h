@@ -56,6 +56,30 @@ void weft_registration_free(weft_registration *registration);
 double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
                                             int viewpoint);
 
+/* ---- The lamp over the session, as the white patches saw it ----
+ *
+ * Each photograph is divided by its own white level, so no sample holds the change. It is reported, and kept in the
+ * provenance. */
+
+/* The mean white level (registration/radiometry/radiometry.h) of the photographs of a viewpoint on which it was
+ * measured. */
+typedef struct weft_viewpoint_white {
+    int photographs; /* 0: none */
+    double level[3];
+} weft_viewpoint_white;
+
+/* Pure. */
+weft_viewpoint_white weft_viewpoint_white_of(const weft_registration *registration, int viewpoint);
+
+typedef struct weft_lamp_drift {
+    int viewpoints;         /* it was measured in */
+    double mean;            /* of their levels, summed over the channels */
+    double lowest, highest; /* the dimmest and the brightest against the mean: 0.01 is one per cent more light */
+} weft_lamp_drift;
+
+/* Pure. */
+weft_lamp_drift weft_lamp_drift_of(const weft_registration *registration);
+
 /* JSON text for the dataset: session, calibration, settings and the outcome of every viewpoint; of several cameras, an
  * array "cameras" of that. Owned by the caller (free). NULL where memory is short. */
 char *weft_registration_provenance(const weft_session *sessions, int count, const weft_registration *registrations);

@@ -1,4 +1,4 @@
-#include "registration/outcome/lamp_drift.h"
+#include "registration/outcome/outcome.h"
 
 #include "base/text/json_text.h"
 #include "btf/session/camera_json.h"

@@ -87,7 +87,7 @@ weft_code weft_photographs_pose_refine(const weft_reduced_sight *reduced, const 
     float *picture = reduce(values, &reduced->sight.camera, reduction);
     if (!picture)
         return weft_fail_memory(error, "a reduced photograph", 4ull * reduced_side * reduced_side);
-    weft_code code = weft_refinement_run(&reduced->sight, picture, 0, &refinement, NULL, error);
+    weft_code code = weft_refinement_run(&reduced->sight, picture, 0, &refinement, error);
     if (code == WEFT_OK)
         take(&refinement, reduction, photograph);
     free(picture);

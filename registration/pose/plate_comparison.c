@@ -156,16 +156,3 @@ double weft_plate_comparison_correlate(const weft_plate_comparison *c)
     }
     return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
 }
-
-void weft_plate_comparison_write_fitted(const weft_plate_comparison *c, float *fitted)
-{
-    const weft_camera *camera = &c->sight->camera;
-    for (int y = 0; y < camera->height; y++) {
-        for (int x = 0; x < camera->width; x++) {
-            double basis[WEFT_LIGHTING_COUNT];
-            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
-            weft_lighting_basis(camera, x, y, basis);
-            fitted[at] = (float)lit_prediction(c, basis, at);
-        }
-    }
-}

@@ -41,7 +41,4 @@ double weft_lighting_at(const double basis[WEFT_LIGHTING_COUNT], const double co
  * compared. */
 double weft_plate_comparison_correlate(const weft_plate_comparison *comparison);
 
-/* The prediction under the lighting, [height][width]. */
-void weft_plate_comparison_write_fitted(const weft_plate_comparison *comparison, float *fitted);
-
 #endif

@@ -22,11 +22,10 @@ static double homography_distance_mm(const weft_homography *a, const weft_homogr
 static const double blur_from_promise[] = {4, 1.5, 0}, blur_from_markers[] = {0};
 
 static weft_code refine_through(const weft_sight *sight, const float *photograph, const double *blur, int blur_count,
-                                weft_refinement *refinement, float *fitted, weft_error *error)
+                                weft_refinement *refinement, weft_error *error)
 {
     for (int i = 0; i < blur_count; i++)
-        WEFT_TRY(
-            weft_refinement_run(sight, photograph, blur[i], refinement, i + 1 < blur_count ? NULL : fitted, error));
+        WEFT_TRY(weft_refinement_run(sight, photograph, blur[i], refinement, error));
     return WEFT_OK;
 }
 
@@ -59,12 +58,12 @@ static void accept_drawing(const weft_refinement *refinement, weft_view_pose *po
 /* Tries to refine from one start. */
 static weft_code try_start(const weft_sight *sight, const float *photograph, const weft_homography *start,
                            bool from_markers, const weft_homography *promised, weft_point_spread point_spread,
-                           const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
+                           const weft_pose_limits *limits, weft_view_pose *pose, weft_error *error)
 {
     weft_refinement refinement = {.homography = *start, .point_spread = point_spread};
     const double *blur = from_markers ? blur_from_markers : blur_from_promise;
     int blur_count = from_markers ? 1 : (int)(sizeof blur_from_promise / sizeof *blur_from_promise);
-    WEFT_TRY(refine_through(sight, photograph, blur, blur_count, &refinement, fitted, error));
+    WEFT_TRY(refine_through(sight, photograph, blur, blur_count, &refinement, error));
     pose->from_markers = from_markers;
     pose->correlation = refinement.correlation;
     pose->shift_mm = homography_distance_mm(&refinement.homography, promised, sight->opening_mm);
@@ -97,7 +96,7 @@ bool weft_markers_trusted(const weft_marker_start *markers, const weft_homograph
 
 weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
                          const weft_homography *promised, weft_point_spread point_spread,
-                         const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
+                         const weft_pose_limits *limits, weft_view_pose *pose, weft_error *error)
 {
     weft_marker_start markers;
     *pose = (weft_view_pose){.source = WEFT_POSE_FAILED};
@@ -106,10 +105,9 @@ weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, con
     pose->marker_rms_px = markers.rms_px;
     bool trusted = weft_markers_trusted(&markers, promised, sight->opening_mm, limits);
     if (trusted)
-        WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, point_spread, limits, pose, fitted,
-                           error));
+        WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, point_spread, limits, pose, error));
     if (pose->source == WEFT_POSE_FAILED)
-        WEFT_TRY(try_start(sight, photograph, promised, false, promised, point_spread, limits, pose, fitted, error));
+        WEFT_TRY(try_start(sight, photograph, promised, false, promised, point_spread, limits, pose, error));
     if (pose->source == WEFT_POSE_FAILED && trusted)
         fall_back(sight, &markers, promised, pose);
     return WEFT_OK;

@@ -35,11 +35,10 @@ bool weft_markers_trusted(const weft_marker_start *markers, const weft_homograph
                           const weft_pose_limits *limits);
 
 /* Finds the pose in `photograph` ([height][width], linear, vignetting removed, NaN where unknown). `point_spread` is
- * the guess the refinement starts from. `fitted` [height][width] may be NULL: the prediction under the fitted lighting,
- * where the source is the drawing. A pose that cannot be found is a result, not an error. Errors: WEFT_SYSTEM. */
+ * the guess the refinement starts from. A pose that cannot be found is a result, not an error. Errors: WEFT_SYSTEM. */
 weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
                          const weft_homography *promised, weft_point_spread point_spread,
-                         const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error);
+                         const weft_pose_limits *limits, weft_view_pose *pose, weft_error *error);
 
 /* What it rests on in words, "rig, markers, drawing" and the like. Static text. */
 const char *weft_pose_source_name(const weft_view_pose *pose);

@@ -294,7 +294,7 @@ static weft_code iterate(refining *c, const float *photograph, weft_refinement *
 }
 
 weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
-                              weft_refinement *refinement, float *fitted, weft_error *error)
+                              weft_refinement *refinement, weft_error *error)
 {
     refining c = {0};
     WEFT_TRY(weft_plate_comparison_create(sight, blur_px, &c.seen, error));
@@ -305,8 +305,6 @@ weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, 
         code = look(&c, photograph, refinement, error);
     if (code == WEFT_OK)
         refinement->correlation = weft_plate_comparison_correlate(&c.seen);
-    if (code == WEFT_OK && fitted)
-        weft_plate_comparison_write_fitted(&c.seen, fitted);
     weft_plate_comparison_free(&c.seen);
     return code;
 }

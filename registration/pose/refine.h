@@ -23,11 +23,10 @@ typedef struct weft_refinement {
 
 /* Improves `refinement` (in: homography and point spread; out: everything). `photograph` [height][width] is linear, of
  * any brightness, vignetting removed; values that are not finite are left out. `blur_px` > 0 compares both sides
- * blurred by a Gaussian of that deviation, which widens the reach to about two of it. `fitted` [height][width] may be
- * NULL; it receives the prediction under the fitted lighting. A failure to converge is no error. Errors: WEFT_SYSTEM
- * for memory. Uses OpenMP. */
+ * blurred by a Gaussian of that deviation, which widens the reach to about two of it. A
+ * failure to converge is no error. Errors: WEFT_SYSTEM for memory. Uses OpenMP. */
 weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
-                              weft_refinement *refinement, float *fitted, weft_error *error);
+                              weft_refinement *refinement, weft_error *error);
 
 /* What one photograph says of the bend of the plate, beside what it says of everything else: the change x of the bend
  * that it asks for has information . x = gradient, in units of the variance of its pixels. x is in mm at the distance

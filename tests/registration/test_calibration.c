@@ -50,7 +50,7 @@ static double worst_error(const weft_camera *truth, const weft_camera *believed,
         for (int k = 0; k < SIZE * SIZE; k++)
             picture[k] *= sight.inverse_vignetting[k];
         assert_int_equal(
-            weft_pose_find(&sight, &target, picture, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL, NULL),
+            weft_pose_find(&sight, &target, picture, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL),
             WEFT_OK);
         assert_int_equal(found.source, WEFT_POSE_DRAWING);
         /* What is registered is the opening as it is printed. */

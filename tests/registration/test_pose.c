@@ -57,9 +57,9 @@ static weft_view_pose find(const plate_scene *what, double tilt_deg, double *err
     weft_homography promised;
     float *picture = photograph(what, tilt_deg, &pose, &promised);
     weft_view_pose found;
-    assert_int_equal(weft_pose_find(&sight, &what->target, picture, &promised, (weft_point_spread){0, 0}, &limits,
-                                    &found, NULL, NULL),
-                     WEFT_OK);
+    assert_int_equal(
+        weft_pose_find(&sight, &what->target, picture, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL),
+        WEFT_OK);
     *error = error_texels(&pose, &found.homography);
     free(picture);
     return found;
@@ -114,7 +114,7 @@ static void the_rigs_promise_is_start_enough_without_markers(void **state)
     weft_refinement refinement = {.homography = promised};
     const double blur[] = {4, 1.5, 0};
     for (int i = 0; i < 3; i++)
-        assert_int_equal(weft_refinement_run(&sight, picture, blur[i], &refinement, NULL, NULL), WEFT_OK);
+        assert_int_equal(weft_refinement_run(&sight, picture, blur[i], &refinement, NULL), WEFT_OK);
     assert_true(refinement.converged);
     assert_true(error_texels(&pose, &refinement.homography) < 0.025);
     free(picture);
@@ -150,7 +150,7 @@ static void darkness_fails(void **state)
     weft_view_pose found;
     float *black = calloc(SIZE * SIZE, sizeof *black);
     assert_int_equal(
-        weft_pose_find(&sight, &scene.target, black, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL, NULL),
+        weft_pose_find(&sight, &scene.target, black, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL),
         WEFT_OK);
     assert_int_equal(found.source, WEFT_POSE_FAILED);
     free(black);
@@ -164,9 +164,9 @@ static void a_plate_far_from_where_the_rig_promised_it_is_not_believed(void **st
     float *picture = photograph(&scene, 15, &pose, &promised);
     weft_pose_limits narrow = {0.001, 0.8};
     weft_view_pose found;
-    assert_int_equal(weft_pose_find(&sight, &scene.target, picture, &promised, (weft_point_spread){0, 0}, &narrow,
-                                    &found, NULL, NULL),
-                     WEFT_OK);
+    assert_int_equal(
+        weft_pose_find(&sight, &scene.target, picture, &promised, (weft_point_spread){0, 0}, &narrow, &found, NULL),
+        WEFT_OK);
     assert_int_equal(found.source, WEFT_POSE_FAILED);
     assert_non_null(strstr(found.remark, "promised"));
     free(picture);

@@ -123,7 +123,7 @@ static void the_published_homography_is_recovered_from_a_start_six_pixels_off(vo
     double start = distance_px(&truth, &refinement.homography);
     const double blur[] = {6, 2, 0};
     for (int i = 0; i < 3; i++)
-        assert_int_equal(weft_refinement_run(&sight, picture, blur[i], &refinement, NULL, NULL), WEFT_OK);
+        assert_int_equal(weft_refinement_run(&sight, picture, blur[i], &refinement, NULL), WEFT_OK);
     double end = distance_px(&truth, &refinement.homography);
     print_message("from %.2f to %.3f pixels of the published map, correlation %.4f\n", start, end,
                   refinement.correlation);
