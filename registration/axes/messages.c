@@ -35,16 +35,16 @@ weft_code weft_axes_say_held(weft_lines *lines, const weft_axes_fit *with, const
     weft_term term = weft_term_of(index);
     weigh(with, index, &value, &deviation);
     if (term.kind == WEFT_TERM_LENS)
-        return weft_lines_add(lines, error, "the lens is held: freeing it makes these shots no more probable");
+        return weft_lines_add(lines, error, "The lens stays as it is: fitting it does not explain these shots better.");
     const char *joint = weft_joint_text[term.joint], *text = term_text[term.kind];
     if (deviation > untold)
-        return weft_lines_add(lines, error, "%s of %s: these shots do not tell it; held at 0", text, joint);
+        return weft_lines_add(lines, error, "These shots cannot determine the %s of %s; fixed at 0.", text, joint);
     double unit = weft_term_unit(camera, term.kind, 0);
     if (term.kind == WEFT_TERM_SCALE)
-        return weft_lines_add(lines, error, "%s of %s: %.5f +- %.5f is no more than chance; held at 0", text, joint,
-                              value * unit, deviation * unit);
-    return weft_lines_add(lines, error, "%s of %s: %.3f +- %.3f degrees is no more than chance; held at 0", text, joint,
-                          weft_deg_of_rad(value * unit), weft_deg_of_rad(deviation * unit));
+        return weft_lines_add(lines, error, "The %s of %s, %.5f +- %.5f, is no more than chance; fixed at 0.", text,
+                              joint, value * unit, deviation * unit);
+    return weft_lines_add(lines, error, "The %s of %s, %.3f +- %.3f degrees, is no more than chance; fixed at 0.", text,
+                          joint, weft_deg_of_rad(value * unit), weft_deg_of_rad(deviation * unit));
 }
 
 /* ---- What was found ---- */

@@ -1,7 +1,7 @@
 #include "registration/lens/board.h"
 
 #include "btf/session/target.h"
-#include "registration/pose/marker_detector.h"
+#include "registration/pose/opencv_bridge.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -16,7 +16,7 @@ typedef struct weft_board {
     int columns, rows;   /* inner corners, squares or markers */
     double size_mm;      /* of the opening, a square or a marker */
     double second_mm;    /* charuco: side of a marker; markers: gap between two */
-    char dictionary[32]; /* of the markers, as registration/pose/marker_detector.h has them */
+    char dictionary[32]; /* of the markers, as registration/pose/opencv_bridge.h has them */
     char text[128];      /* as it was given */
 } weft_board;
 

@@ -1,8 +1,6 @@
 #include "registration/lens/board_points.h"
 
 #include "btf/session/target.h"
-#include "registration/lens/calibrate_bridge.h"
-#include "registration/pose/marker_detector.h"
 #include "registration/pose/opencv_bridge.h"
 
 #include <math.h>
@@ -50,7 +48,8 @@ static double smallest_spacing(const double (*corner)[2], int columns, int rows)
 static weft_code find_chessboard(const weft_board *b, const picture *p, weft_board_point *point, int *count,
                                  weft_error *error)
 {
-    int limit = b->columns * b->rows, found;
+    int limit = b->columns * b->rows;
+    bool found;
     double(*corner)[2] = calloc((size_t)limit, sizeof *corner);
     if (!corner)
         return weft_fail_memory(error, "corners", (size_t)limit * sizeof *corner);
@@ -263,7 +262,7 @@ static weft_code find_by_markers(const weft_board *b, const picture *p, weft_mar
     int found;
     double homography[3][3];
     WEFT_TRY(
-        weft_opencv_find_markers_of(b->dictionary, p->grey, p->width, p->height, marker, MARKER_LIMIT, &found, error));
+        weft_opencv_find_markers(b->dictionary, p->grey, p->width, p->height, marker, MARKER_LIMIT, &found, error));
     WEFT_TRY(agree_on_layout(b, marker, found, placed, homography, error));
     if (placed->count == 0)
         return WEFT_OK;

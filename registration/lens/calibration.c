@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Rayleigh: the median length of a residual is 1.18 standard deviations of one coordinate. */
 static const double deviations_of_median = 1.1774;
@@ -23,7 +24,7 @@ static weft_code median_of(const weft_lens_fit *fit, int first, int count, doubl
     if (!length)
         return weft_fail_memory(error, "residuals", (size_t)count * sizeof *length);
     for (int i = 0; i < count; i++)
-        length[i] = length_of(fit->residual_px[first + i]);
+        length[i] = length_of(fit->corners.residual_px[first + i]);
     *median = weft_board_median(length, count);
     free(length);
     return WEFT_OK;
@@ -36,8 +37,8 @@ static weft_code leave_out_worst(weft_board_photograph *photograph, const weft_l
     double *off = calloc(2 * (size_t)fit->views, sizeof *off), *sorted = off + fit->views;
     weft_code code = off ? WEFT_OK : weft_fail_memory(error, "residuals", (size_t)fit->views * sizeof *off);
     int worst = 0, first = 0;
-    for (int view = 0; code == WEFT_OK && view < fit->views; first += fit->point_count[view++]) {
-        code = median_of(fit, first, fit->point_count[view], &off[view], error);
+    for (int view = 0; code == WEFT_OK && view < fit->views; first += fit->view[view++].count) {
+        code = median_of(fit, first, fit->view[view].count, &off[view], error);
         sorted[view] = off[view];
         worst = off[view] > off[worst] ? view : worst;
     }
@@ -62,15 +63,15 @@ static weft_code mark_strays(weft_board_photograph *photograph, const weft_lens_
     for (int view = 0, i = 0; view < fit->views; view++) {
         weft_board_photograph *p = &photograph[fit->photograph[view]];
         int strays = 0;
-        for (int end = i + fit->point_count[view]; i < end; i++) {
-            if (length_of(fit->residual_px[i]) <= limit)
+        for (int end = i + fit->view[view].count; i < end; i++) {
+            if (length_of(fit->corners.residual_px[i]) <= limit)
                 continue;
             p->stray[fit->source[i]] = *changed = true;
             strays++;
         }
-        if (strays > strayed_share * fit->point_count[view] || fit->point_count[view] - strays < 4)
+        if (strays > strayed_share * fit->view[view].count || fit->view[view].count - strays < 4)
             weft_board_leave_out(p, "%d of its %d corners are more than %.1f pixels off where the lens puts them",
-                                 strays, fit->point_count[view], limit);
+                                 strays, fit->view[view].count, limit);
     }
     return WEFT_OK;
 }
@@ -86,13 +87,13 @@ static weft_code check_count(const weft_board_photograph *photograph, int count,
 
 /* One photograph at a time, and corners when no photograph is left to leave out. Ends at the latest when too few are
  * left. */
-static weft_code fit_robustly(weft_board_photograph *photograph, int count, const weft_lens_model *model,
-                              weft_lens_fit *fit, weft_error *error)
+static weft_code fit_robustly(weft_board_photograph *photograph, int count, unsigned fixed, weft_lens_fit *fit,
+                              weft_error *error)
 {
     for (;;) {
         bool changed = false;
         WEFT_TRY(check_count(photograph, count, error));
-        WEFT_TRY(weft_lens_fit_run(photograph, count, model, 0, 0, fit, error));
+        WEFT_TRY(weft_lens_fit_run(photograph, count, fixed, 0, 0, fit, error));
         weft_code code = leave_out_worst(photograph, fit, &changed, error);
         if (code == WEFT_OK && !changed)
             code = mark_strays(photograph, fit, &changed, error);
@@ -105,40 +106,30 @@ static weft_code fit_robustly(weft_board_photograph *photograph, int count, cons
 
 /* ---- The model ---- */
 
-static weft_lens lens_of(const weft_lens_fit *fit, int width, int height)
+static weft_lens lens_of(const weft_lens_fit *fit)
 {
-    const double *v = fit->value;
-    weft_lens lens = {.camera = {.width = width,
-                                 .height = height,
-                                 .fx = v[0],
-                                 .fy = v[1],
-                                 .cx = v[2],
-                                 .cy = v[3],
-                                 .k1 = v[4],
-                                 .k2 = v[5],
-                                 .p1 = v[6],
-                                 .p2 = v[7],
-                                 .k3 = v[8]},
-                      .rms_px = fit->rms_px};
-    for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
-        lens.standard_error[i] = fit->standard_error[i];
+    weft_lens lens = {.camera = fit->camera, .rms_px = fit->corners.rms_px};
+    memcpy(lens.standard_error, fit->corners.standard_error, sizeof lens.standard_error);
     return lens;
 }
 
-enum { K2 = 5, K3 = 8, MODELS = 6, BORDER_STEPS = 16 };
+enum { MODELS = 6, BORDER_STEPS = 16, SIMPLEST = WEFT_FIX_K2 | WEFT_FIX_TANGENTIAL | WEFT_FIX_K3 };
 
-/* From all terms to the radial one that every lens has. */
-static const weft_lens_model models[MODELS] = {{1, 1, 1}, {1, 0, 1}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
+/* What is fixed at 0, from nothing to all but the radial term that every lens has. */
+static const unsigned models[MODELS] = {
+    0, WEFT_FIX_K2, WEFT_FIX_K3, WEFT_FIX_K2 | WEFT_FIX_K3, WEFT_FIX_TANGENTIAL | WEFT_FIX_K3, SIMPLEST};
 
 /* Akaike's criterion for few residuals (Hurvich and Tsai 1989): they are Gaussian noise of unknown width, and poses are
  * parameters, too. */
-static double criterion(const weft_lens_fit *fit, const weft_lens_model *model)
+static double criterion(const weft_lens_fit *fit, unsigned fixed)
 {
-    double values = 2.0 * fit->points, parameters = 5 + model->k2 + 2 * model->tangential + model->k3 + 6 * fit->views;
+    int terms = 5 + !(fixed & WEFT_FIX_K2) + 2 * !(fixed & WEFT_FIX_TANGENTIAL) + !(fixed & WEFT_FIX_K3);
+    double values = 2.0 * fit->points, parameters = terms + 6 * fit->views;
     double spare = values - parameters - 1;
     if (spare <= 0)
         return INFINITY;
-    return values * log(fit->rms_px * fit->rms_px) + 2 * parameters + 2 * parameters * (parameters + 1) / spare;
+    return values * log(fit->corners.rms_px * fit->corners.rms_px) + 2 * parameters +
+           2 * parameters * (parameters + 1) / spare;
 }
 
 /* Whether a lens can be so: a polynomial may turn back, or run away, where there were no corners. Every pixel of the
@@ -157,29 +148,28 @@ static bool is_plausible(const weft_camera *c)
     return true;
 }
 
-static weft_code note_fixed(const weft_lens_model *model, weft_lens_report *report, weft_error *error)
+static weft_code note_fixed(unsigned fixed, weft_lens_report *report, weft_error *error)
 {
-    const bool is_free[WEFT_LENS_PARAMETERS] = {
-        true, true, true, true, true, model->k2, model->tangential, model->tangential, model->k3};
-    for (int i = K2; i <= K3; i++) {
-        if (!is_free[i])
-            WEFT_TRY(weft_lines_add(&report->fixed, error, "%s is held at 0: the photographs do not tell it",
-                                    weft_lens_parameter_name[i]));
+    static const struct term {
+        unsigned fixed;
+        const char *name;
+    } terms[] = {{WEFT_FIX_K2, "k2"}, {WEFT_FIX_TANGENTIAL, "p1 and p2"}, {WEFT_FIX_K3, "k3"}};
+    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
+        if (fixed & terms[i].fixed)
+            WEFT_TRY(weft_lines_add(&report->fixed, error, "These photographs cannot determine %s; fixed at 0.",
+                                    terms[i].name));
     }
     return WEFT_OK;
 }
 
 /* Takes a fit in the place of the best, if it is better. */
-static void keep_better(const weft_board_photograph *first, const weft_lens_model *model, weft_lens_fit *fit,
-                        weft_lens_model *best_model, weft_lens_fit *best, double *least)
+static void keep_better(unsigned fixed, weft_lens_fit *fit, unsigned *best_fixed, weft_lens_fit *best, double *least)
 {
-    weft_camera camera = lens_of(fit, first->width, first->height).camera;
-    bool is_simplest = !model->k2 && !model->tangential;
-    double here = is_plausible(&camera) ? criterion(fit, model) : INFINITY;
-    if (here < *least || (is_simplest && *least == INFINITY)) {
+    double here = is_plausible(&fit->camera) ? criterion(fit, fixed) : INFINITY;
+    if (here < *least || (fixed == SIMPLEST && *least == INFINITY)) {
         weft_lens_fit_free(best);
         *best = *fit;
-        *best_model = *model;
+        *best_fixed = fixed;
         *least = here;
     } else {
         weft_lens_fit_free(fit);
@@ -187,19 +177,19 @@ static void keep_better(const weft_board_photograph *first, const weft_lens_mode
 }
 
 /* `best` is the fit of the first model, and becomes that of the best. */
-static weft_code choose_model(const weft_board_photograph *photograph, int count, weft_lens_model *best_model,
+static weft_code choose_model(const weft_board_photograph *photograph, int count, unsigned *best_fixed,
                               weft_lens_fit *best, weft_lens_report *report, weft_error *error)
 {
     double least = INFINITY;
     for (int i = 0; i < MODELS; i++) {
         weft_lens_fit fit;
-        weft_code code = weft_lens_fit_run(photograph, count, &models[i], 0, 0, &fit, error);
+        weft_code code = weft_lens_fit_run(photograph, count, models[i], 0, 0, &fit, error);
         if (code == WEFT_BAD_INPUT)
             continue; /* none fits: another may */
         WEFT_TRY(code);
-        keep_better(&photograph[fit.photograph[0]], &models[i], &fit, best_model, best, &least);
+        keep_better(models[i], &fit, best_fixed, best, &least);
     }
-    return note_fixed(best_model, report, error);
+    return note_fixed(*best_fixed, report, error);
 }
 
 /* ---- The report ---- */
@@ -224,26 +214,24 @@ static weft_code report_photographs(const weft_board_photograph *photograph, int
     return WEFT_OK;
 }
 
-static weft_code judge_fit(weft_board_photograph *photograph, int count, const weft_lens_model *model,
-                           const weft_progress *progress, weft_lens_fit *fit, weft_lens_report *report,
-                           weft_error *error)
+static weft_code judge_fit(weft_board_photograph *photograph, int count, unsigned fixed, const weft_progress *progress,
+                           weft_lens_fit *fit, weft_lens_report *report, weft_error *error)
 {
-    const weft_board_photograph *first = &photograph[fit->photograph[0]];
-    WEFT_TRY(weft_lens_jackknife(photograph, count, model, progress, fit, error));
-    report->lens = lens_of(fit, first->width, first->height);
+    WEFT_TRY(weft_lens_jackknife(photograph, count, fixed, progress, fit, error));
+    report->lens = lens_of(fit);
     return weft_lens_judge(fit, report, error);
 }
 
 static weft_code calibrate(const weft_lens_settings *settings, weft_board_photograph *photograph, int count,
                            const weft_progress *progress, weft_lens_report *report, weft_error *error)
 {
-    weft_lens_model model = {1, 1, 1};
+    unsigned fixed = 0;
     weft_lens_fit fit = {0};
-    weft_code code = fit_robustly(photograph, count, &model, &fit, error);
+    weft_code code = fit_robustly(photograph, count, fixed, &fit, error);
     if (code == WEFT_OK && !settings->full_model)
-        code = choose_model(photograph, count, &model, &fit, report, error);
+        code = choose_model(photograph, count, &fixed, &fit, report, error);
     if (code == WEFT_OK)
-        code = judge_fit(photograph, count, &model, progress, &fit, report, error);
+        code = judge_fit(photograph, count, fixed, progress, &fit, report, error);
     weft_lens_fit_free(&fit);
     return code;
 }

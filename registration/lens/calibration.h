@@ -25,7 +25,7 @@ typedef struct weft_lens_report {
     double tilt_rad;       /* the largest angle between two places of the board */
     double reach;          /* of the farthest corner from the middle of the photograph, of half its diagonal */
     double pattern, noise; /* RMS of residuals that neighbouring corners share, and of what they do not, pixels */
-    weft_lines fixed;      /* parameters that were held at 0, and why */
+    weft_lines fixed;      /* parameters that were fixed at 0, and why */
     weft_lines warnings;   /* what the photographs cannot tell */
     int count;
     weft_lens_photograph *photograph; /* [count]; the names are the caller's, the reasons the report's */

@@ -8,64 +8,55 @@ static const double least_tilt_deg = 25, least_reach = 0.65, poor_focal_error = 
 
 /* ---- Leaving out photographs in turn ---- */
 
-weft_code weft_lens_jackknife(const weft_board_photograph *photograph, int count, const weft_lens_model *model,
+weft_code weft_lens_jackknife(const weft_board_photograph *photograph, int count, unsigned fixed,
                               const weft_progress *progress, weft_lens_fit *fit, weft_error *error)
 {
     int folds = fit->views < MOST_FOLDS ? fit->views : MOST_FOLDS;
-    double sum[WEFT_LENS_VALUES] = {0}, square[WEFT_LENS_VALUES] = {0};
+    double sum[WEFT_LENS_PARAMETERS] = {0}, square[WEFT_LENS_PARAMETERS] = {0};
     for (int fold = 0; fit->views > WEFT_LENS_FEWEST && fold < folds; fold++) {
         weft_lens_fit without;
         weft_progress_report(progress, "leaving out photographs", fold, folds);
-        weft_code code = weft_lens_fit_run(photograph, count, model, fold, folds, &without, error);
+        weft_code code = weft_lens_fit_run(photograph, count, fixed, fold, folds, &without, error);
         if (code == WEFT_BAD_INPUT)
             continue;
         WEFT_TRY(code);
-        for (int i = 0; i < WEFT_LENS_VALUES; i++) {
-            double difference = without.value[i] - fit->value[i];
+        for (int i = 0; i < WEFT_LENS_PARAMETERS; i++) {
+            double difference = weft_lens_parameter(&without.camera, i) - weft_lens_parameter(&fit->camera, i);
             sum[i] += difference;
             square[i] += difference * difference;
         }
         weft_lens_fit_free(&without);
     }
     weft_progress_report(progress, "leaving out photographs", folds, folds);
-    for (int i = 0; i < WEFT_LENS_VALUES; i++) {
+    for (int i = 0; i < WEFT_LENS_PARAMETERS; i++) {
         double spread = square[i] - sum[i] * sum[i] / folds;
-        fit->standard_error[i] = fmax(fit->standard_error[i], sqrt(fmax(0, spread) * (folds - 1) / folds));
+        fit->corners.standard_error[i] =
+            fmax(fit->corners.standard_error[i], sqrt(fmax(0, spread) * (folds - 1) / folds));
     }
     return WEFT_OK;
 }
 
 /* ---- Measures ---- */
 
-/* Of the board, in the frame of the camera: the third column of the matrix of a Rodrigues vector. */
-static void normal_of(const double r[3], double normal[3])
-{
-    double angle = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), c = cos(angle), s = sin(angle);
-    double k[3] = {0, 0, 0};
-    for (int i = 0; angle > 0 && i < 3; i++)
-        k[i] = r[i] / angle;
-    normal[0] = (1 - c) * k[0] * k[2] + s * k[1];
-    normal[1] = (1 - c) * k[1] * k[2] - s * k[0];
-    normal[2] = c + (1 - c) * k[2] * k[2];
-}
-
+/* Between the normals of the board in the frame of the camera, the third columns of its rotations. */
 static double largest_tilt(const weft_lens_fit *fit)
 {
     double least = 1;
     for (int a = 0; a < fit->views; a++) {
         for (int b = 0; b < a; b++) {
-            double n[3], m[3];
-            normal_of(fit->rotation[a], n);
-            normal_of(fit->rotation[b], m);
-            least = fmin(least, fabs(n[0] * m[0] + n[1] * m[1] + n[2] * m[2]));
+            const weft_pose *n = &fit->corners.pose[a], *m = &fit->corners.pose[b];
+            double cosine = 0;
+            for (int axis = 0; axis < 3; axis++)
+                cosine += n->rotation[axis][2] * m->rotation[axis][2];
+            least = fmin(least, fabs(cosine));
         }
     }
     return acos(least);
 }
 
-static double farthest_corner(const weft_lens_fit *fit, const weft_camera *camera)
+static double farthest_corner(const weft_lens_fit *fit)
 {
-    double x = (camera->width - 1) / 2.0, y = (camera->height - 1) / 2.0, farthest = 0;
+    double x = (fit->camera.width - 1) / 2.0, y = (fit->camera.height - 1) / 2.0, farthest = 0;
     for (int i = 0; i < fit->points; i++)
         farthest = fmax(farthest, hypot(fit->pixel[i][0] - x, fit->pixel[i][1] - y));
     return farthest / hypot(x, y);
@@ -90,10 +81,11 @@ static void split_residuals(const weft_lens_fit *fit, weft_lens_report *report)
 {
     double shared = 0, whole = 0;
     int first = 0;
-    for (int view = 0; view < fit->views; first += fit->point_count[view++]) {
-        int end = first + fit->point_count[view];
+    for (int view = 0; view < fit->views; first += fit->view[view++].count) {
+        int end = first + fit->view[view].count;
         for (int i = first; i < end; i++) {
-            const double *here = fit->residual_px[i], *beside = fit->residual_px[nearest_of(fit, first, end, i)];
+            const double *here = fit->corners.residual_px[i],
+                         *beside = fit->corners.residual_px[nearest_of(fit, first, end, i)];
             shared += here[0] * beside[0] + here[1] * beside[1];
             whole += here[0] * here[0] + here[1] * here[1];
         }
@@ -132,9 +124,10 @@ static weft_code warn_of_lens(weft_lens_report *r, weft_error *error)
                            "flat, and is it the one that --board says?",
                            r->pattern, r->noise));
     if (r->focal_error > poor_focal_error)
-        WEFT_TRY(weft_lines_add(&r->warnings, error,
-                                "the photographs tell the focal length to %.1f %% only: take more, from more sides",
-                                100 * r->focal_error));
+        WEFT_TRY(
+            weft_lines_add(&r->warnings, error,
+                           "the photographs determine the focal length to %.1f %% only: take more, from more sides",
+                           100 * r->focal_error));
     return WEFT_OK;
 }
 
@@ -143,8 +136,8 @@ weft_code weft_lens_judge(const weft_lens_fit *fit, weft_lens_report *report, we
     report->used = fit->views;
     report->point_count = fit->points;
     report->tilt_rad = largest_tilt(fit);
-    report->reach = farthest_corner(fit, &report->lens.camera);
-    report->focal_error = fit->standard_error[0] / fit->value[0];
+    report->reach = farthest_corner(fit);
+    report->focal_error = fit->corners.standard_error[0] / fit->camera.fx;
     split_residuals(fit, report);
     WEFT_TRY(warn_of_photographs(report, error));
     return warn_of_lens(report, error);

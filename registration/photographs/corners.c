@@ -1,6 +1,6 @@
 #include "registration/photographs/steps.h"
 
-#include "registration/photographs/corner_fit_bridge.h"
+#include "registration/pose/opencv_bridge.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,8 @@ static weft_code find_markers(const weft_light_values *values, weft_marker *mark
         return weft_fail_memory(error, "a photograph", pixels * sizeof *grey);
     for (size_t i = 0; i < pixels; i++)
         grey[i] = isfinite(values->grey[i]) ? values->grey[i] : 1;
-    weft_code code = weft_opencv_find_markers_in_photograph(grey, values->width, values->height, marker, count, error);
+    weft_code code = weft_opencv_find_markers_in_photograph(grey, values->width, values->height, marker,
+                                                            WEFT_MARKERS_LIMIT, count, error);
     free(grey);
     return code;
 }

@@ -2,6 +2,7 @@
 
 #include "base/numeric/statistics.h"
 #include "registration/photographs/strays.h"
+#include "registration/pose/opencv_bridge.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,53 +21,43 @@ static const double tripod_share = 5e-4;
 
 static const double film_diagonal_mm = 43.2666;
 
-/* Memory of one fit: the used photographs, packed. */
-typedef struct packing {
-    int count, *index;
-    weft_corner_view *view;
-    weft_pose *pose;
-    double *rms_px;
-} packing;
+enum { FIXED_OF_ALL = WEFT_FIX_TANGENTIAL | WEFT_FIX_K3 };
 
-static void packing_free(packing *p)
-{
-    free(p->index);
-    free(p->view);
-    free(p->pose);
-    free(p->rms_px);
-}
+/* Terms of the lens that are not estimated, for each weft_lens_knowledge. */
+static const unsigned fixed_terms[] = {
+    FIXED_OF_ALL, FIXED_OF_ALL | WEFT_FIX_FOCAL_LENGTH | WEFT_FIX_MIDDLE | WEFT_FIX_K2,
+    FIXED_OF_ALL | WEFT_FIX_FOCAL_LENGTH | WEFT_FIX_MIDDLE | WEFT_FIX_K2 | WEFT_FIX_K1};
 
-static weft_code pack(const weft_photographs_photograph *photograph, int count, packing *p, weft_error *error)
-{
-    size_t n = (size_t)count;
-    *p = (packing){0, calloc(n, sizeof(int)), calloc(n, sizeof(weft_corner_view)), calloc(n, sizeof(weft_pose)),
-                   calloc(n, sizeof(double))};
-    if (!p->index || !p->view || !p->pose || !p->rms_px) {
-        packing_free(p);
-        return weft_fail_memory(error, "poses", n * 200);
-    }
-    for (int i = 0; i < count; i++) {
-        if (!weft_photographs_used(&photograph[i]))
-            continue;
-        p->index[p->count] = i;
-        p->view[p->count++] = (weft_corner_view){photograph[i].corner_count, (const double(*)[2])photograph[i].plate,
-                                                 (const double(*)[2])photograph[i].seen};
-    }
-    return WEFT_OK;
-}
-
+/* One lens, and a pose for each of the photographs that are used. */
 static weft_code fit(weft_photographs_photograph *photograph, int count, weft_lens_knowledge knowledge,
                      weft_lens_estimate *lens, weft_error *error)
 {
-    packing p;
-    WEFT_TRY(pack(photograph, count, &p, error));
-    weft_code code =
-        weft_opencv_fit_lens(p.view, p.count, knowledge, &lens->camera, &lens->errors, p.pose, p.rms_px, error);
-    for (int i = 0; code == WEFT_OK && i < p.count; i++) {
-        photograph[p.index[i]].pose = p.pose[i];
-        photograph[p.index[i]].corner_rms_px = p.rms_px[i];
+    size_t n = (size_t)count;
+    int *index = calloc(n, sizeof *index), used = 0;
+    weft_corner_view *view = calloc(n, sizeof *view);
+    weft_corner_fit found = {.pose = calloc(n, sizeof *found.pose), .view_rms_px = calloc(n, sizeof(double))};
+    weft_code code = WEFT_OK;
+    if (!index || !view || !found.pose || !found.view_rms_px)
+        code = weft_fail_memory(error, "poses", n * 200);
+    for (int i = 0; code == WEFT_OK && i < count; i++) {
+        const weft_photographs_photograph *p = &photograph[i];
+        if (!weft_photographs_used(p))
+            continue;
+        index[used] = i;
+        view[used++] = (weft_corner_view){p->corner_count, (const double(*)[2])p->plate, (const double(*)[2])p->seen};
     }
-    packing_free(&p);
+    if (code == WEFT_OK)
+        code = weft_opencv_calibrate(view, used, fixed_terms[knowledge], true, &lens->camera, &found, error);
+    for (int i = 0; code == WEFT_OK && i < used; i++) {
+        photograph[index[i]].pose = found.pose[i];
+        photograph[index[i]].corner_rms_px = found.view_rms_px[i];
+    }
+    /* fx follows fy. */
+    lens->errors = (weft_lens_errors){found.standard_error[1], found.standard_error[4], found.standard_error[5]};
+    free(index);
+    free(view);
+    free(found.pose);
+    free(found.view_rms_px);
     return code;
 }
 
@@ -197,9 +188,8 @@ static weft_code share_pose(weft_photographs_photograph *photograph, const int *
         all.count += p->corner_count;
     }
     weft_pose pose;
-    weft_lens_errors none;
-    double rms_px;
-    weft_code code = weft_opencv_fit_lens(&all, 1, WEFT_LENS_KNOWN, camera, &none, &pose, &rms_px, error);
+    weft_corner_fit shared = {.pose = &pose};
+    weft_code code = weft_opencv_calibrate(&all, 1, fixed_terms[WEFT_LENS_KNOWN], true, camera, &shared, error);
     for (int i = 0; code == WEFT_OK && i < count; i++)
         photograph[index[i]].pose = pose;
     free(corner);

@@ -3,7 +3,18 @@
 #define WEFT_REGISTRATION_PHOTOGRAPHS_LENS_H
 
 #include "registration/lamp/photograph.h"
-#include "registration/photographs/corner_fit_bridge.h"
+
+/* What is known of a lens before any photograph is looked at. */
+typedef enum weft_lens_knowledge {
+    WEFT_LENS_UNKNOWN,    /* everything is estimated */
+    WEFT_LENS_FOCAL_ONLY, /* the focal length as written is right; k1 is estimated: few views cannot determine more */
+    WEFT_LENS_KNOWN       /* only poses are estimated */
+} weft_lens_knowledge;
+
+/* Standard errors under the scatter of the corners; 0 for what is not estimated. */
+typedef struct weft_lens_errors {
+    double focal_px, k1, k2;
+} weft_lens_errors;
 
 /* How a lens became known. */
 typedef struct weft_lens_estimate {

@@ -115,7 +115,7 @@ weft_code weft_markers_locate(const weft_sight *sight, const weft_target *target
     }
     draw_front(sight, target, photograph, promised, front);
     expose_front(front, grey);
-    code = weft_opencv_find_markers(grey, front_side, front_side, marker, &count, error);
+    code = weft_opencv_find_markers(NULL, grey, front_side, front_side, marker, WEFT_MARKERS_LIMIT, &count, error);
     if (code != WEFT_OK)
         goto done;
     count = pair_corners(target, promised, marker, count, plate, seen);

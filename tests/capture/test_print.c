@@ -81,7 +81,8 @@ static int find(const raster *r, weft_marker *marker)
 {
     int count;
     weft_error error = {0};
-    expect_ok(weft_opencv_find_markers(r->grey, r->width, r->height, marker, &count, &error), &error);
+    expect_ok(weft_opencv_find_markers(NULL, r->grey, r->width, r->height, marker, WEFT_MARKERS_LIMIT, &count, &error),
+              &error);
     return count;
 }
 

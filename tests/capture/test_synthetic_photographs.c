@@ -95,7 +95,9 @@ static void markers_lie_where_the_truth_says(void **state)
         grey[i] = (uint8_t)lroundf(255 * image.pixels[3 * i + 1]);
     weft_marker marker[WEFT_MARKERS_LIMIT];
     int count = 0;
-    expect_ok(weft_opencv_find_markers(grey, image.width, image.height, marker, &count, &error), &error);
+    expect_ok(
+        weft_opencv_find_markers(NULL, grey, image.width, image.height, marker, WEFT_MARKERS_LIMIT, &count, &error),
+        &error);
     assert_int_equal(count, WEFT_SHEET_MARKER_COUNT);
     for (int i = 0; i < count; i++)
         expect_marker(&request, &shot[0], &marker[i]);
