@@ -304,9 +304,9 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *asked, int width, i
     WEFT_TRY(check_scene(p, scene, width, height, error));
     GLint target;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-    WEFT_TRY(weft_player_draw_shadows(p, scene, sampling.frame, error));
-    WEFT_TRY(weft_player_advance_ground(p, scene, &sampling, error));
     const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
+    WEFT_TRY(weft_player_draw_shadows(p, scene, sampling.frame, error));
+    WEFT_TRY(weft_player_advance_ground(p, scene, &whole, error));
     WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
     p->frames_drawn++;
     WEFT_TRY(weft_player_draw_labels(p, scene, width, height, error));

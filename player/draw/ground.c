@@ -11,6 +11,12 @@ static const double backdrop[3] = {0.34, 0.335, 0.33};
 
 /* ---- Shadows ---- */
 
+double weft_player_shadow_detail(int width, int height)
+{
+    const double whole = 128;
+    return fmin(1, (width > height ? width : height) / whole);
+}
+
 /* Longest shadow that the sum holds, in radii of the mesh: beyond, little is seen of the ground. And what of the
  * environment stands lower than this brings little to it. */
 static const double furthest = 6, low_fill_rad = 66 * WEFT_PI / 180;
@@ -31,23 +37,24 @@ static bool is_same_light(const double a[3], const double b[3])
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Begins anew where the light is another one. */
-static weft_code follow(weft_player *p, weft_ground_shadow *shadow, const double light[3], double reach,
+/* Begins anew where the light is another one, or the picture asks for more detail. */
+static weft_code follow(weft_player *p, weft_ground_shadow *shadow, const double light[3], double reach, double detail,
                         weft_error *error)
 {
-    if (shadow->count > 0 && is_same_light(shadow->light, light))
+    if (shadow->count > 0 && is_same_light(shadow->light, light) &&
+        shadow->whole >= weft_ground_shadow_directions(detail))
         return WEFT_OK;
     memcpy(shadow->light, light, sizeof shadow->light);
-    return weft_ground_shadow_clear(shadow, ground_below(p), reach, error);
+    return weft_ground_shadow_clear(shadow, ground_below(p), reach, detail, error);
 }
 
-static weft_code follow_light(weft_player *p, const weft_scene *scene, int part, weft_error *error)
+static weft_code follow_light(weft_player *p, const weft_scene *scene, int part, double detail, weft_error *error)
 {
     const weft_angles key = scene->light[0].direction;
     const double light[WEFT_GROUND_LIGHTS][3] = {{key.theta_rad, key.phi_rad, scene->key_size_rad},
                                                  {scene->environment_turn_rad}};
     double lowest_rad = part == 0 ? key.theta_rad + scene->key_size_rad : low_fill_rad;
-    return follow(p, &p->ground_shadow[part], light[part], reach_of(p, lowest_rad), error);
+    return follow(p, &p->ground_shadow[part], light[part], reach_of(p, lowest_rad), detail, error);
 }
 
 static weft_vec3 direction_of(const weft_player *p, const weft_scene *scene, int part, int number)
@@ -78,7 +85,7 @@ static bool has_part(const weft_player *p, const weft_scene *scene, int part)
 }
 
 /* A sum that is not whole goes on, in this frame by so many directions. */
-static weft_code sum_shadows(weft_player *p, const weft_scene *scene, int directions, weft_error *error)
+static weft_code sum_shadows(weft_player *p, const weft_scene *scene, int directions, double detail, weft_error *error)
 {
     if (!scene->ground || !weft_scene_has_shadows(scene))
         return WEFT_OK;
@@ -86,22 +93,22 @@ static weft_code sum_shadows(weft_player *p, const weft_scene *scene, int direct
     for (int part = 0; part < WEFT_GROUND_LIGHTS; part++) {
         if (!has_part(p, scene, part))
             continue;
-        WEFT_TRY(follow_light(p, scene, part, error));
-        for (int i = 0; i < directions && p->ground_shadow[part].count < WEFT_GROUND_DIRECTIONS; i++)
+        WEFT_TRY(follow_light(p, scene, part, detail, error));
+        for (int i = 0; i < directions && p->ground_shadow[part].count < p->ground_shadow[part].whole; i++)
             WEFT_TRY(add_direction(p, scene, part, error));
     }
     return WEFT_OK;
 }
 
-weft_code weft_player_advance_ground(weft_player *p, const weft_scene *scene, const weft_sampling *sampling,
-                                     weft_error *error)
+weft_code weft_player_advance_ground(weft_player *p, const weft_scene *scene, const weft_pane *whole, weft_error *error)
 {
-    return sum_shadows(p, scene, sampling->frame < 0 ? MOVING_DIRECTIONS : RESTING_DIRECTIONS, error);
+    return sum_shadows(p, scene, whole->sampling.frame < 0 ? MOVING_DIRECTIONS : RESTING_DIRECTIONS,
+                       weft_player_shadow_detail(whole->width, whole->height), error);
 }
 
-weft_code weft_player_finish_ground(weft_player *p, const weft_scene *scene, weft_error *error)
+weft_code weft_player_finish_ground(weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
 {
-    return sum_shadows(p, scene, WEFT_GROUND_DIRECTIONS, error);
+    return sum_shadows(p, scene, WEFT_GROUND_DIRECTIONS, weft_player_shadow_detail(width, height), error);
 }
 
 /* ---- Light ---- */

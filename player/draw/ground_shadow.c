@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 1024 };
+enum { MAX_SIDE = 1024 };
 
 void weft_ground_shadow_free(weft_ground_shadow *s)
 {
@@ -13,15 +13,17 @@ void weft_ground_shadow_free(weft_ground_shadow *s)
     *s = (weft_ground_shadow){0};
 }
 
-static weft_code create(weft_ground_shadow *s, weft_error *error)
+static weft_code create(weft_ground_shadow *s, int side, weft_error *error)
 {
     const weft_texture_format format = {GL_R16F, GL_RED, GL_HALF_FLOAT}; /* exact for whole numbers to 2048 */
-    WEFT_TRY(weft_gl_texture(format, SIDE, SIDE, 0, NULL, &s->hidden, error));
+    weft_ground_shadow_free(s);
+    s->side = side;
+    WEFT_TRY(weft_gl_texture(format, side, side, 0, NULL, &s->hidden, error));
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glGenRenderbuffers(1, &s->depth);
     glBindRenderbuffer(GL_RENDERBUFFER, s->depth);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, SIDE, SIDE);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, side, side);
     glGenFramebuffers(1, &s->buffer);
     glBindFramebuffer(GL_FRAMEBUFFER, s->buffer);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, s->hidden, 0);
@@ -31,11 +33,19 @@ static weft_code create(weft_ground_shadow *s, weft_error *error)
     return weft_gl_check("making the shadow on the ground", error);
 }
 
-weft_code weft_ground_shadow_clear(weft_ground_shadow *s, weft_vec3 middle, double half_side, weft_error *error)
+int weft_ground_shadow_directions(double detail)
 {
-    if (!s->buffer)
-        WEFT_TRY(create(s, error));
+    return (int)ceil(WEFT_GROUND_DIRECTIONS * detail);
+}
+
+weft_code weft_ground_shadow_clear(weft_ground_shadow *s, weft_vec3 middle, double half_side, double detail,
+                                   weft_error *error)
+{
+    int side = (int)ceil(MAX_SIDE * detail);
+    if (s->side != side)
+        WEFT_TRY(create(s, side, error));
     s->count = 0;
+    s->whole = weft_ground_shadow_directions(detail);
     s->middle = middle;
     s->half_side = half_side;
     glBindFramebuffer(GL_FRAMEBUFFER, s->buffer);
@@ -54,7 +64,7 @@ static double shift_of(int n, double step)
 /* Down to the ground along the light. Column-major. All heights are as near: none is cut off. */
 static void look_down(const weft_ground_shadow *s, weft_vec3 light, float matrix[16])
 {
-    double scale = 1 / s->half_side, texel = 2.0 / SIDE;
+    double scale = 1 / s->half_side, texel = 2.0 / s->side;
     double slope[2] = {(double)(light.x / light.z), (double)(light.y / light.z)};
     const double middle[2] = {(double)s->middle.x, (double)s->middle.y};
     const double shift[2] = {shift_of(s->count, 0.7548776662466927), shift_of(s->count, 0.5698402909980532)};
@@ -73,7 +83,7 @@ void weft_ground_shadow_begin(weft_ground_shadow *s, weft_vec3 light, GLuint pro
     float clip_of_world[16], depth = 1 - (float)(s->count + 1) / (WEFT_GROUND_DIRECTIONS + 2);
     look_down(s, light, clip_of_world);
     glBindFramebuffer(GL_FRAMEBUFFER, s->buffer);
-    glViewport(0, 0, SIDE, SIDE);
+    glViewport(0, 0, s->side, s->side);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDepthRangef(depth, depth);

@@ -5,15 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* SOFT_FRAMES: of a picture with soft shadows at least. */
+/* SOFT_FRAMES: of a picture with soft shadows at least, at their full detail. */
 enum { MAX_SIDE = 16384, MAX_SAMPLES = 64, SOFT_FRAMES = 36 };
 
-static long least_frames(const weft_scene *scene)
+static long least_frames(const weft_scene *scene, int width, int height)
 {
     bool is_soft = scene->environment || (scene->light_count > 0 && scene->key_size_rad > 0);
-    return scene->environment_reference               ? WEFT_ENVIRONMENT_PARTS
-           : weft_scene_has_shadows(scene) && is_soft ? SOFT_FRAMES
-                                                      : 1;
+    return scene->environment_reference ? WEFT_ENVIRONMENT_PARTS
+           : weft_scene_has_shadows(scene) && is_soft
+               ? (long)ceil(SOFT_FRAMES * weft_player_shadow_detail(width, height))
+               : 1;
 }
 
 /* One place in each cell of a grid, and no two in a row or column of one that is as fine again: across a long pixel,
@@ -35,9 +36,9 @@ static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples
                             weft_canvas *canvas, weft_error *error)
 {
     long places = (long)samples * samples, total = places;
-    while (total < least_frames(scene))
+    while (total < least_frames(scene, canvas->width, canvas->height))
         total += places;
-    WEFT_TRY(weft_player_finish_ground(p, scene, error));
+    WEFT_TRY(weft_player_finish_ground(p, scene, canvas->width, canvas->height, error));
     for (long i = 0; i < total; i++) {
         const weft_sampling sampling = sampling_of(i, samples, total);
         weft_canvas_begin_frame(canvas);

@@ -97,6 +97,10 @@ weft_variant weft_player_casting_variant(const weft_player *player, const weft_s
  * many there are. */
 double weft_player_sequence(const weft_player *player, long frame);
 
+/* The share of the directions of a soft shadow that a picture of this size needs, (0, 1]: a penumbra of few pixels has
+ * few steps. 1 from 128 pixels on. Pure. */
+double weft_player_shadow_detail(int width, int height);
+
 /* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. Light passes through the
  * holes of the cloth, as the first mode that is shown and has holes knows them. Errors: WEFT_SYSTEM. */
 weft_code weft_player_draw_shadows(weft_player *player, const weft_scene *scene, long frame, weft_error *error);
@@ -104,9 +108,10 @@ weft_code weft_player_draw_shadows(weft_player *player, const weft_scene *scene,
 /* Adds to what the mesh hides of the lights from the ground, if the scene shows that and it is not whole yet: a few
  * directions, or all that it lacks. It begins anew where lights, mesh or holes are others. Leaves another framebuffer
  * bound. Errors: WEFT_SYSTEM. */
-weft_code weft_player_advance_ground(weft_player *player, const weft_scene *scene, const weft_sampling *sampling,
+weft_code weft_player_advance_ground(weft_player *player, const weft_scene *scene, const weft_pane *whole,
                                      weft_error *error);
-weft_code weft_player_finish_ground(weft_player *player, const weft_scene *scene, weft_error *error);
+weft_code weft_player_finish_ground(weft_player *player, const weft_scene *scene, int width, int height,
+                                    weft_error *error);
 
 /* The program that draws the ground of a pane behind the mesh is in use then. */
 void weft_player_use_ground(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
