@@ -80,11 +80,27 @@ static bool put_attributes(hid_t file, const weft_dataset_layout *layout)
            put_known_number(file, "plane_mm", layout->plane_mm);
 }
 
+/* How an object is created that does not store the second of its creation: the same content gives the same bytes. */
+static hid_t creation_without_time(hid_t class)
+{
+    hid_t creation = H5Pcreate(class);
+    H5Pset_obj_track_times(creation, false);
+    return creation;
+}
+
+static hid_t create_array(hid_t file, const char *name, hid_t type, hid_t space)
+{
+    hid_t creation = creation_without_time(H5P_DATASET_CREATE);
+    hid_t object = H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Pclose(creation);
+    return object;
+}
+
 static bool put_array(hid_t file, const char *name, hid_t stored_type, hid_t type, int rank, const hsize_t *size,
                       const void *values)
 {
     hid_t space = H5Screate_simple(rank, size, NULL);
-    hid_t object = H5Dcreate2(file, name, stored_type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t object = create_array(file, name, stored_type, space);
     bool done = object >= 0 && H5Dwrite(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
     H5Dclose(object);
     H5Sclose(space);
@@ -109,7 +125,7 @@ static hid_t create_texels(hid_t file, const weft_dataset_layout *layout, const 
     weft_dataset_chunk(layout, &width, &height);
     const hsize_t size[4] = {(hsize_t)layout->height, (hsize_t)layout->width, (hsize_t)per_texel, 3};
     const hsize_t chunk[4] = {(hsize_t)height, (hsize_t)width, (hsize_t)per_texel, 3};
-    hid_t space = H5Screate_simple(rank, size, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
+    hid_t space = H5Screate_simple(rank, size, NULL), creation = creation_without_time(H5P_DATASET_CREATE);
     bool prepared = H5Pset_chunk(creation, rank, chunk) >= 0 && H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0;
     if (is_deflated)
         prepared = prepared && H5Pset_deflate(creation, deflate_level) >= 0;
@@ -164,8 +180,9 @@ weft_code weft_dataset_create(const char *temporary_path, const char *path, cons
                               weft_error *error)
 {
     weft_hdf5_quiet();
-    hid_t access = file_access();
-    hid_t file = H5Fcreate(temporary_path, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    hid_t access = file_access(), creation = creation_without_time(H5P_FILE_CREATE);
+    hid_t file = H5Fcreate(temporary_path, H5F_ACC_TRUNC, creation, access);
+    H5Pclose(creation);
     H5Pclose(access);
     if (file < 0)
         return fail(path, error);
@@ -256,7 +273,7 @@ weft_code weft_dataset_file_write_figures(const weft_dataset_file *file, const w
 weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error)
 {
     hid_t type = text_type(strlen(text)), space = H5Screate(H5S_SCALAR);
-    hid_t object = H5Dcreate2(file->file, "provenance", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t object = create_array(file->file, "provenance", type, space);
     bool done = object >= 0 && H5Dwrite(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
     weft_code code = done ? WEFT_OK : fail(file->path, error);
     H5Dclose(object);

@@ -94,7 +94,10 @@ static void fill_image(const weft_session *session, const weft_virtual_rig *rig,
 static bool write_array(hid_t file, const char *name, hid_t type, int rank, const hsize_t *shape, const void *values)
 {
     hid_t space = H5Screate_simple(rank, shape, NULL);
-    hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(creation, false);
+    hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Pclose(creation);
     bool written = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
     if (set >= 0)
         written = H5Dclose(set) >= 0 && written;

@@ -1,3 +1,4 @@
+#include "base/atomic_file.h"
 #include "btf/dataset/dataset.h"
 #include "btf/dataset/write_blocks.h"
 #include "tests/support/cmocka_all.h"
@@ -8,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static weft_dataset *open_dataset(const char *path)
 {
@@ -344,6 +346,46 @@ static void an_abandoned_writer_leaves_nothing(void **state)
     weft_dataset_layout_free(&layout);
 }
 
+/* A dataset with all that a file can hold, which then gets other heights. */
+static void write_everything(const char *path)
+{
+    enum { WIDTH = 3, HEIGHT = 2, VIEWS = 2 };
+    weft_dataset_layout layout = tiny_layout(WIDTH, HEIGHT, VIEWS, 1);
+    static const double weight[VIEWS] = {0.25, 3};
+    static const float opacity[HEIGHT * WIDTH * VIEWS] = {1, 0.5}, height[HEIGHT * WIDTH] = {0.25, -0.25};
+    float frames[HEIGHT * WIDTH][6];
+    for (int i = 0; i < HEIGHT * WIDTH; i++)
+        memcpy(frames[i], (float[6]){0, 0, 1, 1, 0, 0}, sizeof frames[i]);
+    weft_dataset_heights heights = {.width = WIDTH, .height = HEIGHT, .level_count = 1, .value = (float *)height};
+    weft_dataset_writer *writer;
+    assert_int_equal(weft_dataset_writer_create(path, &layout, &writer, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_put_figure(writer, WEFT_IMAGE_WEIGHT, weight, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_put_opacity(writer, opacity, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_put_frames(writer, &frames[0][0], NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_put_heights(writer, &heights, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_finish(writer, NULL, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_put_relief(path, path, 0.125, &heights, "{}", NULL), WEFT_OK);
+    weft_dataset_layout_free(&layout);
+}
+
+static void the_same_content_gives_the_same_bytes_in_another_second(void **state)
+{
+    (void)state;
+    char *first, *second;
+    size_t first_size, second_size;
+    write_everything("first.btf.h5");
+    nanosleep(&(struct timespec){.tv_sec = 1, .tv_nsec = 50000000}, NULL);
+    write_everything("second.btf.h5");
+    assert_int_equal(weft_read_file("first.btf.h5", SIZE_MAX, &first, &first_size, NULL), WEFT_OK);
+    assert_int_equal(weft_read_file("second.btf.h5", SIZE_MAX, &second, &second_size, NULL), WEFT_OK);
+    assert_int_equal(first_size, second_size);
+    assert_memory_equal(first, second, first_size);
+    free(first);
+    free(second);
+    remove("first.btf.h5");
+    remove("second.btf.h5");
+}
+
 int test_dataset(void)
 {
     const struct CMUnitTest tests[] = {
@@ -358,6 +400,7 @@ int test_dataset(void)
         cmocka_unit_test(long_provenance_is_kept),
         cmocka_unit_test(blocks_outside_the_material_are_refused),
         cmocka_unit_test(an_abandoned_writer_leaves_nothing),
+        cmocka_unit_test(the_same_content_gives_the_same_bytes_in_another_second),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }
