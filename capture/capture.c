@@ -1,7 +1,6 @@
 #include "capture/capture.h"
 
-#include "capture/planned_session.h"
-#include "capture/sensor_frames.h"
+#include "capture/shooting.h"
 
 #include <stdio.h>
 #include <stdlib.h>

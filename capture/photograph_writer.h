@@ -2,7 +2,21 @@
 #ifndef WEFT_CAPTURE_PHOTOGRAPH_WRITER_H
 #define WEFT_CAPTURE_PHOTOGRAPH_WRITER_H
 
+#include "base/status.h"
 #include "btf/session/session.h"
+
+#include <stdint.h>
+
+/* ---- Size and checksum of a file: how the journal knows a photograph again. ---- */
+
+/* CRC-32 (ISO 3309, as in zlib) of all bytes of a file. Thread-safe. Errors: WEFT_BAD_INPUT where it cannot be read. */
+weft_code weft_file_crc(const char *path, uint64_t *bytes, uint32_t *crc32, weft_error *error);
+
+/* ---- Files of a camera that a session keeps as they are. ---- */
+
+/* Puts the file of a camera where the session keeps it: moved, or copied and then removed where it lies on another
+ * disk. Makes the folder. Errors: WEFT_SYSTEM; what was there is there still. */
+weft_code weft_keep_file(const char *from, const char *to, weft_error *error);
 
 /* Name, in the folder of the session, of the photograph that is being written. */
 extern const char weft_unfinished_photograph[];

@@ -1,4 +1,4 @@
-#include "capture/planned_session.h"
+#include "capture/capture.h"
 
 #include "capture/plan.h"
 

@@ -1,7 +1,6 @@
 #include "capture/capture.h"
 
 #include "base/clock.h"
-#include "capture/planned_session.h"
 #include "capture/shooting.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "capture/resume.h"
+#include "capture/capture.h"
 
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
@@ -44,7 +44,8 @@ static void sweep(const char *folder)
 
 /* ---- New or known ---- */
 
-weft_code weft_refuse_unexpected_files(const char *folder, weft_error *error)
+/* Hidden files are locks and temporary files. */
+static weft_code refuse_unexpected_files(const char *folder, weft_error *error)
 {
     DIR *listing = opendir(folder);
     if (!listing)
@@ -62,7 +63,7 @@ static weft_code create_or_open(const weft_session *wanted, weft_session *sessio
     char path[PATH_MAX];
     snprintf(path, sizeof path, "%s/session.json", wanted->folder);
     if (access(path, F_OK) != 0) {
-        WEFT_TRY(weft_refuse_unexpected_files(wanted->folder, error));
+        WEFT_TRY(refuse_unexpected_files(wanted->folder, error));
         WEFT_TRY(weft_session_create(wanted, error));
     }
     /* Also a new session is read back, so that it is the same numbers that a later run will work with. */
@@ -275,7 +276,7 @@ weft_code weft_camera_folder_prepare(const char *folder, const weft_camera_list 
                    : weft_fail(error, WEFT_BAD_INPUT,
                                "session '%s' was begun with other cameras; repeat them or choose another folder",
                                folder);
-    WEFT_TRY(weft_refuse_unexpected_files(folder, error));
+    WEFT_TRY(refuse_unexpected_files(folder, error));
     return weft_camera_list_write(folder, list, error);
 }
 

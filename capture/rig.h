@@ -22,13 +22,13 @@ typedef struct weft_rig_camera {
                         weft_error *error);
     /* The file that the last exposure came as, for the session to keep; NULL: there is none. */
     const char *(*original)(void *device);
+    void (*close)(void *device); /* NULL: whoever opened the rig does more than that */
 } weft_rig_camera;
 
 /* What it takes a stage to go through poses, from the first to the last. */
 typedef struct weft_stage_estimate {
-    double seconds;       /* of moving and settling */
-    double bound_seconds; /* no order of these poses takes less; 0 where none was derived */
-    int moves;            /* of any axis */
+    double seconds; /* of moving and settling */
+    int moves;      /* of any axis */
 } weft_stage_estimate;
 
 /* Where axes and lamps stand for a photograph, in numbers that only their stage understands. */
@@ -100,6 +100,7 @@ struct weft_rig {
                                goes on only where all its values are the same */
     weft_rig_settings settings;    /* set-up and exposure */
     weft_camera calibration;       /* of the camera */
+    const char *lens_path;         /* file of the calibration; NULL: there is none */
     const weft_rig_poses *poses;   /* where the axes truly are, with the camera that goes with them; NULL: not known */
     const char *poses_path;        /* their file, for messages */
     weft_sensor_noise noise;       /* of a raw value */

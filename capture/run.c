@@ -2,10 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
-#include "capture/kept_file.h"
 #include "capture/photograph_writer.h"
-#include "capture/planned_session.h"
-#include "capture/sensor_frames.h"
 #include "capture/shooting.h"
 #include "capture/shot_order.h"
 #include "capture/status/status_page.h"

@@ -1,4 +1,4 @@
-#include "capture/sensor_frames.h"
+#include "capture/shooting.h"
 
 #include "capture/exposure.h"
 #include "capture/photograph_writer.h"

@@ -46,12 +46,6 @@ weft_code weft_session_problems_add(weft_session_problems *problems, weft_sessio
 weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_problems *problems,
                                    weft_error *error);
 
-/* ---- What the check is made of ---- */
-
-/* Adds every shot whose photograph has the bytes of one that the journal names before it. Checksums alone would find
- * two in a large session by chance. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_find_duplicates(const weft_session *session, weft_session_problems *problems, weft_error *error);
-
 /* Adds every file, and every folder of files, that belongs to no shot of the plan and is no part of a session; and what
  * a killed capture leaves. Other hidden files are ignored. Errors: WEFT_SYSTEM. */
 weft_code weft_find_unexpected(const weft_session *session, weft_session_problems *problems, weft_error *error);

@@ -128,7 +128,6 @@ static weft_code order_leader(const weft_rig_stage *stage, const weft_session *s
         sorted[i] = *find_shot(together, count, camera, numbers[i]);
     memcpy(together, sorted, (size_t)count * sizeof *together);
     sum->seconds += estimate.seconds;
-    sum->bound_seconds += estimate.bound_seconds;
     sum->moves += estimate.moves;
     return WEFT_OK;
 }

@@ -132,27 +132,24 @@ static weft_code judge(const capture_command *command, const char *camera, const
     return failed ? weft_fail(error, WEFT_BAD_INPUT, "%d of the checks failed", failed) : WEFT_OK;
 }
 
-static weft_code check_rig(const capture_command *command, weft_rig *rig, const char *lens, weft_error *error)
+static weft_code check_rig(const capture_command *command, weft_rig *rig, weft_error *error)
 {
-    const weft_preflight_request request = {&command->request, lens};
     weft_progress progress = weft_command_progress(&command->common);
     weft_preflight result;
-    WEFT_TRY(weft_preflight_run(&request, rig, &progress, &result, error));
+    WEFT_TRY(weft_preflight_run(&command->request, rig, &progress, &result, error));
     weft_code code = judge(command, rig->camera_name, &result, error);
     weft_preflight_free(&result);
     return code;
 }
 
 /* Of several cameras, one after another. */
-static weft_code check_all(const capture_command *command, weft_rig *rig, weft_laboratory *laboratory,
-                           weft_error *error)
+static weft_code check_all(const capture_command *command, weft_rig *rig, weft_error *error)
 {
     weft_code result = WEFT_OK;
     for (weft_rig *one = rig; one; one = one->next) {
-        const char *lens = laboratory ? weft_laboratory_lens(laboratory, one) : NULL;
         if (one->camera_name)
             weft_command_say(&command->common, "camera '%s':", one->camera_name);
-        weft_code code = check_rig(command, one, lens, error);
+        weft_code code = check_rig(command, one, error);
         if (code == WEFT_SYSTEM)
             return code;
         result = result == WEFT_OK ? code : result;
@@ -275,8 +272,7 @@ static weft_code capture_with_virtual_cameras(const capture_command *command, we
     WEFT_TRY(read_poses(command, &rigs[0].rig, error));
     if (command->dry_run)
         return rehearse_all(command, &rigs[0].rig, rigs[0].warning, error);
-    return command->check ? check_all(command, &rigs[0].rig, NULL, error)
-                          : take_session(command, &rigs[0].rig, rigs, error);
+    return command->check ? check_all(command, &rigs[0].rig, error) : take_session(command, &rigs[0].rig, rigs, error);
 }
 
 static weft_code capture_with_virtual_rig(capture_command *command, weft_error *error)
@@ -315,7 +311,7 @@ static weft_code capture_with_laboratory(const capture_command *command, weft_er
     weft_code code =
         command->dry_run ? rehearse_all(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
     if (code == WEFT_OK && command->check)
-        code = check_all(command, rig, laboratory, error);
+        code = check_all(command, rig, error);
     else if (code == WEFT_OK && !command->dry_run)
         code = take_session(command, rig, NULL, error);
     weft_laboratory_close(laboratory);

@@ -1,7 +1,7 @@
 #include "cli/capture_report.h"
 
 #include "base/text/json_text.h"
-#include "capture/planned_session.h"
+#include "capture/capture.h"
 #include "capture/shot_order.h"
 #include "cli/command/describe.h"
 
@@ -44,9 +44,6 @@ static void say_stage(const weft_common_options *common, const weft_capture_rehe
     weft_command_say(common, "disk: %.2f GB, and what the camera itself writes", (double)rehearsal->bytes * 1e-9);
     weft_command_say(common, "time: %.2f h for %d moves, %.2f h for photographs of %.2f s", stage->seconds / 3600,
                      stage->moves, photographs_s / 3600, rehearsal->seconds_per_photograph);
-    if (stage->bound_seconds > 0)
-        weft_command_say(common, "no order of these poses takes less than %.2f h of moves: this one takes %.1f %% more",
-                         stage->bound_seconds / 3600, 100 * (stage->seconds / stage->bound_seconds - 1));
 }
 
 void weft_say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order)

@@ -5,7 +5,7 @@
 
 static const double same_deg = 1e-9;
 
-/* ---- Stays ----
+/* ---- Viewpoints ----
  *
  * A viewpoint is what is visited once: poses whose slow axes, as a mask, stand alike. */
 
@@ -24,7 +24,7 @@ typedef struct plan {
     const int *local;                /* its numbers */
 } plan;
 
-/* Those of camera and sample; those of the light where a person turns one. */
+/* Those of camera and sample; those of the light where an operator turns one. */
 static void choose_slow_axes(plan *p)
 {
     bool light = false;
@@ -152,9 +152,7 @@ static weft_code order(plan *p, weft_axes_path *path, weft_error *error)
     free(ordered);
     WEFT_TRY(code);
     measure(p, path);
-    return p->count <= WEFT_AXES_BOUND_MAX
-               ? weft_tree_bound(p->axes, p->pose, p->count, p->number, &path->bound_seconds, error)
-               : WEFT_OK;
+    return WEFT_OK;
 }
 
 weft_code weft_axes_order(const weft_axes *axes, const weft_axis_positions *pose, int count, int *number,

@@ -1,4 +1,4 @@
-/* The order in which a stage takes poses: which is soon done, and how soon no order can be. */
+/* The order in which a stage takes poses, so that it is soon done. */
 #ifndef WEFT_CAPTURE_AXES_PATH_H
 #define WEFT_CAPTURE_AXES_PATH_H
 
@@ -6,12 +6,9 @@
 #include "capture/axes/axes.h"
 
 typedef struct weft_axes_path {
-    double seconds;       /* of moving and settling, from the first pose to the last */
-    double bound_seconds; /* no order takes less; 0 where there are more than WEFT_AXES_BOUND_MAX poses */
+    double seconds; /* of moving and settling, from the first pose to the last */
     int moves;
 } weft_axes_path;
-
-enum { WEFT_AXES_BOUND_MAX = 20000 };
 
 /* Sorts `number` [count], which index `pose`. The poses of one viewpoint of the camera follow each other, since they
  * share what registration finds of it; where a person turns the light, those of one place of the light do.
@@ -19,13 +16,7 @@ enum { WEFT_AXES_BOUND_MAX = 20000 };
  * for memory.
  *
  * The order: viewpoints by their nearest neighbour, then segments are moved and turned round while that saves time (Or
- * 1976; Croes 1958), then the same within each viewpoint, from the pose where the last one ended.
- *
- * The bound: a path through n poses is a spanning tree of them, and no tree costs less than the least. A move against
- * backlash costs more than its way back, so each pair of poses is counted as min(c(a, b) + d, c(b, a) - d) with
- * d = p(b) - p(a) of a potential p linear in the positions. Along a path p(b) - p(a) sums to at most the range R of p,
- * so that a path costs at least the least tree less R, whatever p is; p = 0 and the p that evens out both ways of the
- * usual step of each axis are tried, and the better bound counts. */
+ * 1976; Croes 1958), then the same within each viewpoint, from the pose where the last one ended. */
 weft_code weft_axes_order(const weft_axes *axes, const weft_axis_positions *pose, int count, int *number,
                           weft_axes_path *path, weft_error *error);
 
@@ -40,11 +31,5 @@ enum { WEFT_TOUR_MAX = 3000 };
  * segments until no such change is shorter. More than WEFT_TOUR_MAX places stay as they are. Deterministic. Errors:
  * WEFT_SYSTEM for memory. */
 weft_code weft_tour(int count, weft_tour_cost *cost, const void *context, int *place, weft_error *error);
-
-/* ---- How soon no order of poses can be through: the least spanning tree (Prim 1957). See capture/axes/path.h ---- */
-
-/* Of pose[number[0 .. count - 1]]. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_tree_bound(const weft_axes *axes, const weft_axis_positions *pose, int count, const int *number,
-                          double *seconds, weft_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "capture/camera/folder_camera.h"
+#include "capture/camera/camera.h"
 
 #include "base/picture/exif.h"
 
@@ -14,12 +14,12 @@
 static const char name[] = "watched folder";
 
 /* Files come whole, but some programs write them in more than one go: closed is not yet complete. */
-struct weft_folder_camera {
-    weft_folder_camera_settings settings;
+typedef struct folder_camera {
+    weft_camera_settings settings;
     weft_clock clock;
     int watch;
     char original[PATH_MAX]; /* of the last frame */
-};
+} folder_camera;
 
 /* ---- Events ---- */
 
@@ -45,7 +45,7 @@ static bool read_events(int watch, visitor *visit, void *context)
 
 /* What is made of the files that come. */
 typedef struct taking {
-    weft_folder_camera *camera;
+    folder_camera *camera;
     uint16_t *samples;
     double exposure_s;
     weft_code code;
@@ -68,16 +68,16 @@ static weft_code take(taking *t, const char *path)
 static bool try_file(void *context, const char *file)
 {
     taking *t = context;
-    const weft_folder_camera_settings *settings = &t->camera->settings;
+    const weft_camera_settings *settings = &t->camera->settings;
     char *path = t->camera->original;
     if (fnmatch(settings->pattern, file, FNM_CASEFOLD | FNM_PERIOD) != 0)
         return false;
-    snprintf(path, PATH_MAX, "%s/%s", settings->folder, file);
+    snprintf(path, PATH_MAX, "%s/%s", settings->device, file);
     t->code = take(t, path);
     return t->code == WEFT_OK;
 }
 
-static bool stop_asked(const weft_folder_camera *camera)
+static bool stop_asked(const folder_camera *camera)
 {
     return camera->settings.stop && *camera->settings.stop;
 }
@@ -86,7 +86,7 @@ static bool stop_asked(const weft_folder_camera *camera)
 static weft_code wait_for_file(taking *t, weft_error *error)
 {
     const double step_s = 0.1;
-    const weft_folder_camera_settings *settings = &t->camera->settings;
+    const weft_camera_settings *settings = &t->camera->settings;
     const weft_clock *clock = &t->camera->clock;
     double end_s = clock->now_s(clock->context) + settings->timeout_s;
     while (clock->now_s(clock->context) < end_s) {
@@ -98,14 +98,14 @@ static weft_code wait_for_file(taking *t, weft_error *error)
     }
     if (t->code == WEFT_OK)
         return weft_fail(error, WEFT_SYSTEM, "%s: no photograph '%s' came into '%s' within %g s", name,
-                         settings->pattern, settings->folder, settings->timeout_s);
+                         settings->pattern, settings->device, settings->timeout_s);
     return weft_fail(error, WEFT_SYSTEM, "%s: %.300s", name, t->error.message);
 }
 
 static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
                         weft_error *error)
 {
-    weft_folder_camera *camera = device;
+    folder_camera *camera = device;
     const weft_shutter *shutter = &camera->settings.shutter;
     taking t = {.camera = camera, .samples = samples};
     (void)frame;
@@ -121,40 +121,33 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
 
 static const char *original(void *device)
 {
-    return ((weft_folder_camera *)device)->original;
+    return ((folder_camera *)device)->original;
 }
 
 /* ---- The camera ---- */
 
-weft_code weft_folder_camera_create(const weft_folder_camera_settings *settings, weft_folder_camera **result,
-                                    weft_error *error)
+static void close_camera(void *device)
 {
-    weft_folder_camera *camera = calloc(1, sizeof *camera);
+    folder_camera *camera = device;
+    if (camera->watch >= 0)
+        close(camera->watch);
+    free(camera);
+}
+
+weft_code weft_folder_camera_open(const weft_camera_settings *settings, weft_rig_camera *result, weft_error *error)
+{
+    folder_camera *camera = calloc(1, sizeof *camera);
     if (!camera)
         return weft_fail_memory(error, name, sizeof *camera);
     camera->settings = *settings;
     camera->clock = settings->clock ? *settings->clock : weft_system_clock;
     camera->watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     if (camera->watch < 0 ||
-        inotify_add_watch(camera->watch, settings->folder, IN_CLOSE_WRITE | IN_MOVED_TO | IN_ONLYDIR) < 0) {
-        weft_code code = weft_fail_errno(error, "watch folder", settings->folder);
-        weft_folder_camera_free(camera);
+        inotify_add_watch(camera->watch, settings->device, IN_CLOSE_WRITE | IN_MOVED_TO | IN_ONLYDIR) < 0) {
+        weft_code code = weft_fail_errno(error, "watch folder", settings->device);
+        close_camera(camera);
         return code;
     }
-    *result = camera;
+    *result = (weft_rig_camera){camera, expose, original, close_camera};
     return WEFT_OK;
-}
-
-void weft_folder_camera_free(weft_folder_camera *camera)
-{
-    if (!camera)
-        return;
-    if (camera->watch >= 0)
-        close(camera->watch);
-    free(camera);
-}
-
-weft_rig_camera weft_folder_camera_for_rig(weft_folder_camera *camera)
-{
-    return (weft_rig_camera){.device = camera, .expose = expose, .original = original};
 }

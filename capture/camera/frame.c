@@ -1,4 +1,4 @@
-#include "capture/camera/frame.h"
+#include "capture/camera/camera.h"
 
 #include "base/picture/colour.h"
 

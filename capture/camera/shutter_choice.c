@@ -1,4 +1,4 @@
-#include "capture/camera/shutter_choice.h"
+#include "capture/camera/camera.h"
 
 #include <ctype.h>
 #include <stdbool.h>

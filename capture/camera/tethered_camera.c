@@ -1,4 +1,4 @@
-#include "capture/camera/tethered_camera.h"
+#include "capture/camera/camera.h"
 
 #include "base/clock.h"
 #include "base/picture/exif.h"
@@ -15,40 +15,40 @@
 
 static const char name[] = "camera";
 
-struct weft_tethered_camera {
-    weft_tethered_camera_settings settings;
+typedef struct tethered_camera {
+    weft_camera_settings settings;
     GPContext *context;
     Camera *camera;  /* NULL: not open */
     char folder[64]; /* of files that the session has not taken yet */
     char original[PATH_MAX];
-    char told[128];    /* what libgphoto2 last said was wrong; empty: nothing */
+    char message[128]; /* the last error of libgphoto2; empty: none */
     double largest_kb; /* of the files so far */
     double longest_s;  /* of the times that its shutter has names for; 0: not known */
-};
+} tethered_camera;
 
-static weft_code fail_with(const weft_tethered_camera *c, int result, const char *what, weft_error *error)
+static weft_code fail_with(const tethered_camera *c, int result, const char *what, weft_error *error)
 {
     if (result == GP_ERROR_NO_SPACE)
         return weft_fail(error, WEFT_SYSTEM, "%s: its card is full", name);
     return weft_fail(error, WEFT_SYSTEM, "%s: cannot %s: %s", name, what,
-                     *c->told ? c->told : gp_result_as_string(result));
+                     *c->message ? c->message : gp_result_as_string(result));
 }
 
 static void note_error(GPContext *context, const char *text, void *data)
 {
-    weft_tethered_camera *c = data;
+    tethered_camera *c = data;
     (void)context;
-    snprintf(c->told, sizeof c->told, "%.*s", (int)strcspn(text, "\n"), text);
+    snprintf(c->message, sizeof c->message, "%.*s", (int)strcspn(text, "\n"), text);
 }
 
-static bool stop_asked(const weft_tethered_camera *c)
+static bool stop_asked(const tethered_camera *c)
 {
     return c->settings.stop && *c->settings.stop;
 }
 
 /* ---- Opening ---- */
 
-static void close_camera(weft_tethered_camera *c)
+static void close_camera(tethered_camera *c)
 {
     if (!c->camera)
         return;
@@ -57,16 +57,16 @@ static void close_camera(weft_tethered_camera *c)
     c->camera = NULL;
 }
 
-static int choose_port(weft_tethered_camera *c)
+static int choose_port(tethered_camera *c)
 {
     GPPortInfoList *list;
     GPPortInfo info;
-    if (!*c->settings.port)
+    if (!*c->settings.device)
         return GP_OK;
     gp_port_info_list_new(&list);
     int result = gp_port_info_list_load(list);
     if (result >= GP_OK)
-        result = gp_port_info_list_lookup_path(list, c->settings.port);
+        result = gp_port_info_list_lookup_path(list, c->settings.device);
     if (result >= GP_OK)
         result = gp_port_info_list_get_info(list, result, &info);
     if (result >= GP_OK)
@@ -76,11 +76,11 @@ static int choose_port(weft_tethered_camera *c)
 }
 
 /* A camera on a network cannot be told by a number of its plug. */
-static int choose_model(weft_tethered_camera *c)
+static int choose_model(tethered_camera *c)
 {
     CameraAbilitiesList *list;
     CameraAbilities abilities;
-    if (strncmp(c->settings.port, "ptpip:", 6) != 0)
+    if (strncmp(c->settings.device, "ptpip:", 6) != 0)
         return GP_OK;
     gp_abilities_list_new(&list);
     int result = gp_abilities_list_load(list, c->context);
@@ -94,7 +94,7 @@ static int choose_model(weft_tethered_camera *c)
     return result;
 }
 
-static int open_alone(weft_tethered_camera *c)
+static int open_alone(tethered_camera *c)
 {
     int result = gp_camera_new(&c->camera);
     if (result >= GP_OK)
@@ -111,7 +111,7 @@ static int open_alone(weft_tethered_camera *c)
 }
 
 /* Cameras of one rig may be lost together, each in its thread; libltdl, which loads their drivers, knows no threads. */
-static int open_camera(weft_tethered_camera *c)
+static int open_camera(tethered_camera *c)
 {
     static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
     if (c->camera)
@@ -124,14 +124,14 @@ static int open_camera(weft_tethered_camera *c)
 
 /* ---- Exposure ---- */
 
-static bool needs_bulb(weft_tethered_camera *c, double exposure_s)
+static bool needs_bulb(tethered_camera *c, double exposure_s)
 {
     if (c->longest_s == 0)
         c->longest_s = weft_shutter_longest(c->camera, c->context);
     return weft_shutter_needs_bulb(c->camera, c->context, c->longest_s, exposure_s);
 }
 
-static void wait_until(const weft_tethered_camera *c, double end_s)
+static void wait_until(const tethered_camera *c, double end_s)
 {
     const double slice_s = 0.05;
     for (double left_s; (left_s = end_s - weft_now_s()) > 0 && !stop_asked(c);) {
@@ -142,7 +142,7 @@ static void wait_until(const weft_tethered_camera *c, double end_s)
 }
 
 /* The file that the camera says it has made since; its shutter may be open for `exposure_s` yet. */
-static int wait_for_file(weft_tethered_camera *c, double exposure_s, CameraFilePath *path)
+static int wait_for_file(tethered_camera *c, double exposure_s, CameraFilePath *path)
 {
     enum { WAIT_MS = 100 };
     double end_s = weft_now_s() + exposure_s + c->settings.timeout_s;
@@ -161,7 +161,7 @@ static int wait_for_file(weft_tethered_camera *c, double exposure_s, CameraFileP
 }
 
 /* A busy camera refuses it at first. A shutter that stays open would end only with its battery. */
-static int let_go(weft_tethered_camera *c)
+static int let_go(tethered_camera *c)
 {
     enum { TRIES = 20 };
     const struct timespec pause = {0, 100000000};
@@ -174,7 +174,7 @@ static int let_go(weft_tethered_camera *c)
 }
 
 /* *lasted_s receives how long the shutter was open, by the clock: drivers open it last, and close it first. */
-static int expose_by_bulb(weft_tethered_camera *c, double exposure_s, CameraFilePath *path, double *lasted_s)
+static int expose_by_bulb(tethered_camera *c, double exposure_s, CameraFilePath *path, double *lasted_s)
 {
     int result = weft_shutter_choose_bulb(c->camera, c->context);
     if (result >= GP_OK)
@@ -191,7 +191,7 @@ static int expose_by_bulb(weft_tethered_camera *c, double exposure_s, CameraFile
 /* ---- Photographs ---- */
 
 /* What the camera has to say of before: else it would be taken for an answer. */
-static int drain_events(weft_tethered_camera *c)
+static int drain_events(tethered_camera *c)
 {
     enum { MOST = 200, WAIT_MS = 10 };
     CameraEventType type = GP_EVENT_UNKNOWN;
@@ -204,7 +204,7 @@ static int drain_events(weft_tethered_camera *c)
     return result;
 }
 
-static int fetch(weft_tethered_camera *c, const CameraFilePath *path)
+static int fetch(tethered_camera *c, const CameraFilePath *path)
 {
     CameraFile *file;
     const char *data;
@@ -224,7 +224,7 @@ static int fetch(weft_tethered_camera *c, const CameraFilePath *path)
 }
 
 /* gp_camera_capture waits a minute for the file of a camera that has refused to take it. */
-static int release(weft_tethered_camera *c, double exposure_s, CameraFilePath *path)
+static int release(tethered_camera *c, double exposure_s, CameraFilePath *path)
 {
     int result = gp_camera_trigger_capture(c->camera, c->context);
     if (result == GP_ERROR_NOT_SUPPORTED)
@@ -233,7 +233,7 @@ static int release(weft_tethered_camera *c, double exposure_s, CameraFilePath *p
 }
 
 /* Whether no card has room for another file like those before: drivers say of it that something is wrong, no more. */
-static bool is_card_full(weft_tethered_camera *c)
+static bool is_card_full(tethered_camera *c)
 {
     CameraStorageInformation *card = NULL;
     int count = 0, full = 0;
@@ -248,7 +248,7 @@ static bool is_card_full(weft_tethered_camera *c)
 }
 
 /* *said_s is what the camera says of its shutter, or nothing is: then *bulb_s is what the clock says. */
-static int expose_once(weft_tethered_camera *c, double exposure_s, CameraFilePath *path, double *said_s, double *bulb_s)
+static int expose_once(tethered_camera *c, double exposure_s, CameraFilePath *path, double *said_s, double *bulb_s)
 {
     if (needs_bulb(c, exposure_s))
         return expose_by_bulb(c, exposure_s, path, bulb_s);
@@ -260,11 +260,11 @@ static int expose_once(weft_tethered_camera *c, double exposure_s, CameraFilePat
     return result;
 }
 
-static int take_once(weft_tethered_camera *c, double exposure_s, double *said_s, double *bulb_s)
+static int take_once(tethered_camera *c, double exposure_s, double *said_s, double *bulb_s)
 {
     CameraFilePath path;
     *said_s = *bulb_s = 0;
-    c->told[0] = 0;
+    c->message[0] = 0;
     int result = open_camera(c);
     if (result >= GP_OK)
         result = drain_events(c);
@@ -283,7 +283,7 @@ static bool is_final(int result)
 }
 
 /* Again where the camera is busy or gone, opened anew, until the time is up. */
-static weft_code take(weft_tethered_camera *c, double exposure_s, double *said_s, double *bulb_s, weft_error *error)
+static weft_code take(tethered_camera *c, double exposure_s, double *said_s, double *bulb_s, weft_error *error)
 {
     enum { BUSY = 3 }; /* failures that may be a camera that is busy, whatever its card: it may write elsewhere */
     const struct timespec pause = {0, 300000000};
@@ -320,7 +320,7 @@ static weft_code bulb_exposure(double lasted_s, double noted_s, double *read_bac
 static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
                         weft_error *error)
 {
-    weft_tethered_camera *c = device;
+    tethered_camera *c = device;
     const weft_frame_format *format = &c->settings.format;
     double said_s, bulb_s;
     weft_exif exif;
@@ -340,13 +340,13 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
 
 static const char *original(void *device)
 {
-    return ((weft_tethered_camera *)device)->original;
+    return ((tethered_camera *)device)->original;
 }
 
 /* ---- The camera ---- */
 
 /* Some cameras hand over their files and no more. */
-static weft_code expect_release(const weft_tethered_camera *c, weft_error *error)
+static weft_code expect_release(const tethered_camera *c, weft_error *error)
 {
     CameraAbilities abilities;
     int result = gp_camera_get_abilities(c->camera, &abilities);
@@ -358,7 +358,7 @@ static weft_code expect_release(const weft_tethered_camera *c, weft_error *error
     return WEFT_OK;
 }
 
-static weft_code begin(weft_tethered_camera *c, weft_error *error)
+static weft_code begin(tethered_camera *c, weft_error *error)
 {
     const char *temporary = getenv("TMPDIR");
     snprintf(c->folder, sizeof c->folder, "%.40s/weft-XXXXXX", temporary && *temporary ? temporary : "/tmp");
@@ -374,26 +374,9 @@ static weft_code begin(weft_tethered_camera *c, weft_error *error)
     return result >= GP_OK ? expect_release(c, error) : fail_with(c, result, "open it", error);
 }
 
-weft_code weft_tethered_camera_create(const weft_tethered_camera_settings *settings, weft_tethered_camera **result,
-                                      weft_error *error)
+static void free_camera(void *device)
 {
-    weft_tethered_camera *c = calloc(1, sizeof *c);
-    if (!c)
-        return weft_fail_memory(error, name, sizeof *c);
-    c->settings = *settings;
-    weft_code code = begin(c, error);
-    if (code != WEFT_OK) {
-        weft_tethered_camera_free(c);
-        return code;
-    }
-    *result = c;
-    return WEFT_OK;
-}
-
-void weft_tethered_camera_free(weft_tethered_camera *c)
-{
-    if (!c)
-        return;
+    tethered_camera *c = device;
     close_camera(c);
     if (c->context)
         gp_context_unref(c->context);
@@ -402,7 +385,17 @@ void weft_tethered_camera_free(weft_tethered_camera *c)
     free(c);
 }
 
-weft_rig_camera weft_tethered_camera_for_rig(weft_tethered_camera *camera)
+weft_code weft_tethered_camera_open(const weft_camera_settings *settings, weft_rig_camera *result, weft_error *error)
 {
-    return (weft_rig_camera){.device = camera, .expose = expose, .original = original};
+    tethered_camera *c = calloc(1, sizeof *c);
+    if (!c)
+        return weft_fail_memory(error, name, sizeof *c);
+    c->settings = *settings;
+    weft_code code = begin(c, error);
+    if (code != WEFT_OK) {
+        free_camera(c);
+        return code;
+    }
+    *result = (weft_rig_camera){c, expose, original, free_camera};
+    return WEFT_OK;
 }

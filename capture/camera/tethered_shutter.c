@@ -1,6 +1,6 @@
 #include "capture/camera/tethered_shutter.h"
 
-#include "capture/camera/shutter_choice.h"
+#include "capture/camera/camera.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "capture/camera/video_camera.h"
+#include "capture/camera/camera.h"
 
 #include "capture/camera/video_library.h"
 
@@ -7,17 +7,17 @@
 
 static const char name[] = "video camera", module_name[] = "weft_video_library.so";
 
-struct weft_video_camera {
-    weft_video_camera_settings settings;
+typedef struct video_camera {
+    weft_camera_settings settings;
     const weft_video_library *library;
     weft_video *video;
-};
+} video_camera;
 
 static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
                         weft_error *error)
 {
-    weft_video_camera *camera = device;
-    const weft_video_camera_settings *settings = &camera->settings;
+    video_camera *camera = device;
+    const weft_camera_settings *settings = &camera->settings;
     weft_image image;
     double said_s;
     (void)frame;
@@ -38,10 +38,16 @@ static weft_code open_library(const weft_video_library **library, weft_error *er
     return *library ? WEFT_OK : weft_fail(error, WEFT_SYSTEM, "%s: %s", name, dlerror());
 }
 
-weft_code weft_video_camera_create(const weft_video_camera_settings *settings, weft_video_camera **result,
-                                   weft_error *error)
+static void close_camera(void *device)
 {
-    weft_video_camera *camera = calloc(1, sizeof *camera);
+    video_camera *camera = device;
+    camera->library->close(camera->video);
+    free(camera);
+}
+
+weft_code weft_video_camera_open(const weft_camera_settings *settings, weft_rig_camera *result, weft_error *error)
+{
+    video_camera *camera = calloc(1, sizeof *camera);
     if (!camera)
         return weft_fail_memory(error, name, sizeof *camera);
     camera->settings = *settings;
@@ -52,19 +58,6 @@ weft_code weft_video_camera_create(const weft_video_camera_settings *settings, w
         free(camera);
         return code;
     }
-    *result = camera;
+    *result = (weft_rig_camera){camera, expose, NULL, close_camera};
     return WEFT_OK;
-}
-
-void weft_video_camera_free(weft_video_camera *camera)
-{
-    if (!camera)
-        return;
-    camera->library->close(camera->video);
-    free(camera);
-}
-
-weft_rig_camera weft_video_camera_for_rig(weft_video_camera *camera)
-{
-    return (weft_rig_camera){.device = camera, .expose = expose};
 }

@@ -26,9 +26,6 @@ weft_code weft_laboratory_connect(weft_laboratory *laboratory, weft_error *error
 /* Stops what moves and switches off what burns. */
 void weft_laboratory_close(weft_laboratory *laboratory);
 
-/* File of the calibration of the lens of one of its rigs; lives as long as the laboratory. */
-const char *weft_laboratory_lens(const weft_laboratory *laboratory, const weft_rig *rig);
-
 /* What a capture drives: the rig of the first camera, which leads to the others. Lives as long as the laboratory. */
 weft_rig *weft_laboratory_rig(weft_laboratory *laboratory);
 

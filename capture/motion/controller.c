@@ -1,10 +1,48 @@
 #include "capture/motion/controller.h"
 
 #include "base/clock.h"
-#include "capture/motion/stage_messages.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+static double degrees(int32_t position)
+{
+    return position * 1e-3;
+}
+
+static const char *name_of(const weft_axes *axes, int channel)
+{
+    for (int k = 0; k < axes->count; k++) {
+        if (axes->axis[k].channel == channel && !axes->axis[k].by_hand)
+            return axes->axis[k].name;
+    }
+    return "that nobody named";
+}
+
+static weft_code fail_fault(const weft_axes *axes, const weft_stage_reply *reply, weft_error *error)
+{
+    const char *axis = name_of(axes, reply->fault_axis);
+    double at = reply->fault_axis < WEFT_PROTOCOL_AXES ? degrees(reply->position[reply->fault_axis]) : 0;
+    if (reply->fault == WEFT_FAULT_STALLED)
+        return weft_fail(error, WEFT_SYSTEM, "stage: axis '%s' stalled at %.3f degrees", axis, at);
+    if (reply->fault == WEFT_FAULT_LIMIT)
+        return weft_fail(error, WEFT_SYSTEM, "stage: axis '%s' hit its limit switch at %.3f degrees", axis, at);
+    return weft_fail(error, WEFT_SYSTEM, "stage: axis '%s' does not find its reference", axis);
+}
+
+static weft_code fail_result(const weft_stage_reply *reply, const char *what, weft_error *error)
+{
+    static const char *const words[] = {[WEFT_RESULT_DONE] = "did it",
+                                        [WEFT_RESULT_BAD_CRC] = "got a broken question",
+                                        [WEFT_RESULT_BAD_VERSION] = "speaks another version of the protocol",
+                                        [WEFT_RESULT_BAD_COMMAND] = "cannot do that",
+                                        [WEFT_RESULT_BEYOND_LIMIT] = "says that this is beyond its limits",
+                                        [WEFT_RESULT_NOT_HOMED] = "is not homed",
+                                        [WEFT_RESULT_BUSY] = "is still moving"};
+    bool known = (unsigned)reply->result < sizeof words / sizeof *words;
+    return weft_fail(error, WEFT_SYSTEM, "stage: asked to %s, the controller %s", what,
+                     known ? words[reply->result] : "answers nonsense");
+}
 
 /* Axes that move stop when the host has been silent for so long. */
 enum { SILENCE_MS = 2000 };
@@ -17,7 +55,6 @@ struct weft_controller {
     weft_controller_settings settings;
     const weft_axes *axes;
     weft_usb_link link;
-    weft_controller_log log;
     bool greeted;
     uint32_t boot;           /* of the controller as it was greeted last */
     uint32_t reference_boot; /* and as it was homed */
@@ -86,8 +123,7 @@ static weft_code greet(weft_controller *c, weft_error *error)
     if (outcome != WEFT_LINK_ANSWERED)
         return fail_outcome(outcome, error);
     if (reply.result != WEFT_RESULT_DONE)
-        return weft_stage_fail_result(&reply, "say hello", error);
-    c->log.restarted += c->greeted && reply.boot != c->boot;
+        return fail_result(&reply, "say hello", error);
     /* Another start: its references are gone, and with them whatever was known of where the axes stand. */
     bool restarted = !c->greeted || reply.boot != c->boot;
     c->greeted = true;
@@ -102,7 +138,6 @@ static weft_code reach(weft_controller *c, weft_error *error)
         return WEFT_OK;
     bool again = c->greeted;
     WEFT_TRY(weft_usb_link_open(&c->link, again ? c->settings.replug_s : 0, error));
-    c->log.replugged += again;
     return greet(c, error);
 }
 
@@ -124,9 +159,8 @@ static weft_code ask_surely(weft_controller *c, weft_stage_request request, weft
 
 /* ---- Waiting for axes ---- */
 
-static void stop(void *device)
+void weft_controller_stop(weft_controller *c)
 {
-    weft_controller *c = device;
     weft_stage_reply reply;
     if (!c->link.handle)
         return;
@@ -154,14 +188,14 @@ static weft_code wait_for_rest(weft_controller *c, double limit_s, weft_stage_re
     *failure = WEFT_MOVE_OVER;
     for (;;) {
         if (stop_asked(c)) {
-            stop(c);
+            weft_controller_stop(c);
             return weft_fail(error, WEFT_SYSTEM, "stopped while the stage moved");
         }
         WEFT_TRY(ask_surely(c, (weft_stage_request){.command = WEFT_COMMAND_STATUS}, reply, error));
         if (c->boot != c->reference_boot)
             return fail_restarted(failure, error);
         if (reply->state == WEFT_STATE_FAULT) {
-            weft_stage_fail_fault(c->axes, reply, error);
+            fail_fault(c->axes, reply, error);
             return fail_lost(failure);
         }
         if (reply->state != WEFT_STATE_MOVING && reply->state != WEFT_STATE_HOMING)
@@ -170,7 +204,7 @@ static weft_code wait_for_rest(weft_controller *c, double limit_s, weft_stage_re
             break;
         pause_for(c->settings.poll_s);
     }
-    stop(c);
+    weft_controller_stop(c);
     return weft_fail(error, WEFT_SYSTEM, "stage: the axes still move after %.0f s", limit_s);
 }
 
@@ -184,9 +218,8 @@ static uint8_t channels_of(const weft_controller *c, unsigned mask)
     return (uint8_t)channels;
 }
 
-static weft_code home(void *device, unsigned mask, weft_move_failure *failure, weft_error *error)
+weft_code weft_controller_home(weft_controller *c, unsigned mask, weft_move_failure *failure, weft_error *error)
 {
-    weft_controller *c = device;
     weft_stage_reply reply;
     *failure = WEFT_MOVE_OVER;
     c->mask = 0;
@@ -195,14 +228,14 @@ static weft_code home(void *device, unsigned mask, weft_move_failure *failure, w
     uint8_t channels = channels_of(c, mask);
     WEFT_TRY(ask_surely(c, (weft_stage_request){.command = WEFT_COMMAND_HOME, .mask = channels}, &reply, error));
     if (reply.result != WEFT_RESULT_DONE)
-        return weft_stage_fail_result(&reply, "home its axes", error);
+        return fail_result(&reply, "home its axes", error);
     WEFT_TRY(wait_for_rest(c, homing_patience_s, &reply, failure, error));
     if ((reply.homed & channels) != channels || reply.state != WEFT_STATE_IDLE) {
         weft_error_set(error, WEFT_SYSTEM, "stage: homing was interrupted");
         return fail_lost(failure);
     }
     for (int k = 0; k < c->axes->count; k++)
-        c->reached.deg[k] = weft_stage_degrees(reply.position[c->axes->axis[k].channel]);
+        c->reached.deg[k] = degrees(reply.position[c->axes->axis[k].channel]);
     c->disturbances = reply.disturbances;
     return WEFT_OK;
 }
@@ -246,7 +279,7 @@ static bool stands_at(const weft_controller *c, const weft_stage_reply *reply, u
                       const weft_axis_positions *to)
 {
     for (int k = 0; k < c->axes->count; k++) {
-        double at = weft_stage_degrees(reply->position[c->axes->axis[k].channel]);
+        double at = degrees(reply->position[c->axes->axis[k].channel]);
         if ((mask >> k & 1) && !(fabs(at - to->deg[k]) <= c->settings.tolerance_deg))
             return false;
     }
@@ -256,16 +289,15 @@ static bool stands_at(const weft_controller *c, const weft_stage_reply *reply, u
 /* A refusal that a new homing may mend. */
 static weft_code fail_move(const weft_stage_reply *reply, weft_move_failure *failure, weft_error *error)
 {
-    weft_stage_fail_result(reply, "move its axes", error);
+    fail_result(reply, "move its axes", error);
     bool mends = reply->result == WEFT_RESULT_NOT_HOMED || reply->result == WEFT_RESULT_BUSY;
     *failure = mends ? WEFT_MOVE_LOST : WEFT_MOVE_OVER;
     return WEFT_SYSTEM;
 }
 
-static weft_code move(void *device, unsigned mask, const weft_axis_positions *to, weft_move_failure *failure,
-                      weft_error *error)
+weft_code weft_controller_move(weft_controller *c, unsigned mask, const weft_axis_positions *to,
+                               weft_move_failure *failure, weft_error *error)
 {
-    weft_controller *c = device;
     weft_stage_reply reply;
     double limit_s = time_for(c, mask, to);
     *failure = WEFT_MOVE_OVER;
@@ -294,9 +326,8 @@ static weft_code move(void *device, unsigned mask, const weft_axis_positions *to
     return fail_lost(failure);
 }
 
-static weft_code held(void *device, bool *still, weft_error *error)
+weft_code weft_controller_held(weft_controller *c, bool *still, weft_error *error)
 {
-    weft_controller *c = device;
     weft_stage_reply reply;
     WEFT_TRY(ask_surely(c, (weft_stage_request){.command = WEFT_COMMAND_STATUS}, &reply, error));
     *still = c->boot == c->reference_boot && reply.state == WEFT_STATE_IDLE && reply.disturbances == c->disturbances &&
@@ -316,7 +347,7 @@ static weft_code set_lamp(void *device, int lamp, double level, weft_error *erro
     WEFT_TRY(ask_surely(c, (weft_stage_request){.command = WEFT_COMMAND_LIGHT, .number = number, .word = word}, &reply,
                         error));
     if (reply.result != WEFT_RESULT_DONE)
-        return weft_stage_fail_result(&reply, "switch a lamp", error);
+        return fail_result(&reply, "switch a lamp", error);
     return reply.lamp == number && reply.level == word
                ? WEFT_OK
                : weft_fail(error, WEFT_SYSTEM, "stage: lamp %d does not switch", lamp);
@@ -338,7 +369,7 @@ weft_code weft_controller_pulse(weft_controller *c, double seconds, weft_error *
     weft_link_outcome outcome = ask(c, request, &reply);
     if (outcome != WEFT_LINK_ANSWERED)
         return fail_outcome(outcome, error);
-    return reply.result == WEFT_RESULT_DONE ? WEFT_OK : weft_stage_fail_result(&reply, "release the shutter", error);
+    return reply.result == WEFT_RESULT_DONE ? WEFT_OK : fail_result(&reply, "release the shutter", error);
 }
 
 /* ---- The controller ---- */
@@ -364,28 +395,14 @@ void weft_controller_free(weft_controller *c)
     weft_stage_reply reply;
     if (!c)
         return;
-    stop(c);
+    weft_controller_stop(c);
     if (c->link.handle)
         ask(c, (weft_stage_request){.command = WEFT_COMMAND_LIGHT, .number = WEFT_PROTOCOL_NO_LAMP}, &reply);
     weft_usb_link_close(&c->link);
     free(c);
 }
 
-weft_axis_driver weft_controller_driver(weft_controller *controller)
-{
-    return (weft_axis_driver){controller, home, move, held, stop};
-}
-
 weft_lamp_switch weft_controller_lamps(weft_controller *controller)
 {
     return (weft_lamp_switch){controller, set_lamp, abandon_lamps};
-}
-
-weft_controller_log weft_controller_get_log(const weft_controller *c)
-{
-    weft_controller_log log = c->log;
-    log.lost = c->link.lost;
-    log.damaged = c->link.damaged;
-    log.stale = c->link.stale;
-    return log;
 }

@@ -2,7 +2,8 @@
 #ifndef WEFT_CAPTURE_MOTION_CONTROLLER_H
 #define WEFT_CAPTURE_MOTION_CONTROLLER_H
 
-#include "capture/motion/driver.h"
+#include "capture/axes/axes.h"
+#include "capture/motion/lamps.h"
 #include "capture/motion/usb_link.h"
 
 typedef struct weft_controller_settings {
@@ -24,18 +25,31 @@ weft_code weft_controller_create(const weft_controller_settings *settings, const
 /* Stops the axes and switches the lamps off, where it is open. */
 void weft_controller_free(weft_controller *controller);
 
-/* The ways in. The controller stays the caller's. */
-weft_axis_driver weft_controller_driver(weft_controller *controller);
+/* How a move ended that did not arrive. */
+typedef enum weft_move_failure {
+    WEFT_MOVE_LOST, /* the axes stand still but must be homed again; then it may be tried again */
+    WEFT_MOVE_OVER  /* it makes no sense to try again */
+} weft_move_failure;
+
+/* Opens the controller if need be, and drives the axes of the mask to their references. Errors: WEFT_SYSTEM; *failure
+ * says what can be done, here and below. */
+weft_code weft_controller_home(weft_controller *controller, unsigned mask, weft_move_failure *failure,
+                               weft_error *error);
+
+/* Drives the axes of the mask, in one leg. OK only if all of them stand where they should. */
+weft_code weft_controller_move(weft_controller *controller, unsigned mask, const weft_axis_positions *to,
+                               weft_move_failure *failure, weft_error *error);
+
+/* Whether the axes stand where the last move left them and have not been elsewhere. Errors: WEFT_SYSTEM. */
+weft_code weft_controller_held(weft_controller *controller, bool *held, weft_error *error);
+
+/* Stops all axes, where the controller is open. */
+void weft_controller_stop(weft_controller *controller);
+
+/* Its lamps. The controller stays the caller's. */
 weft_lamp_switch weft_controller_lamps(weft_controller *controller);
 
 /* One pulse of the shutter's contact. Returns when it has begun. Errors: WEFT_SYSTEM. */
 weft_code weft_controller_pulse(weft_controller *controller, double seconds, weft_error *error);
-
-/* What went wrong and was put right. */
-typedef struct weft_controller_log {
-    int lost, damaged, stale; /* answers */
-    int replugged, restarted; /* times that it was gone; and that it had lost its references then */
-} weft_controller_log;
-weft_controller_log weft_controller_get_log(const weft_controller *controller);
 
 #endif

@@ -1,4 +1,4 @@
-#include "capture/motion/lamp_guard.h"
+#include "capture/motion/lamps.h"
 
 #include <fcntl.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
-#include "capture/motion/relay.h"
+#include "capture/motion/lamps.h"
 
-#include "capture/motion/hid_open.h"
+#include "capture/motion/usb_link.h"
 
 #include <stdlib.h>
 #include <string.h>

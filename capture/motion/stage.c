@@ -141,7 +141,7 @@ static weft_code order_poses(const weft_stage *stage, const weft_shot *shot, int
         code = weft_axes_order(stage->parts.axes, pose, count, index, &path, error);
     for (int i = 0; code == WEFT_OK && i < count; i++)
         numbers[i] = before[index[i]];
-    *estimate = (weft_stage_estimate){path.seconds, path.bound_seconds, path.moves};
+    *estimate = (weft_stage_estimate){path.seconds, path.moves};
     free(index);
     free(before);
     return code;
@@ -182,10 +182,10 @@ static unsigned driven_axes(const weft_axes *axes)
 
 static weft_code drive_home(weft_stage *stage, weft_move_failure *failure, weft_error *error)
 {
-    const weft_axis_driver *driver = &stage->parts.driver;
+    weft_controller *controller = stage->parts.controller;
     forget_places(stage);
-    if (driver->home)
-        WEFT_TRY(driver->home(driver->device, driven_axes(stage->parts.axes), failure, error));
+    if (controller)
+        WEFT_TRY(weft_controller_home(controller, driven_axes(stage->parts.axes), failure, error));
     stage->homed = true;
     return WEFT_OK;
 }
@@ -194,12 +194,11 @@ static weft_code drive_home(weft_stage *stage, weft_move_failure *failure, weft_
 static weft_code drive_leg(weft_stage *stage, unsigned mask, const weft_axis_positions *to, weft_move_failure *failure,
                            weft_error *error)
 {
-    const weft_axis_driver *driver = &stage->parts.driver;
     for (int k = 0; k < stage->parts.axes->count; k++) {
         unsigned now = stage->parts.axes->together ? mask : mask & 1u << k;
         if (now == 0)
             continue;
-        WEFT_TRY(driver->move(driver->device, now, to, failure, error));
+        WEFT_TRY(weft_controller_move(stage->parts.controller, now, to, failure, error));
         if (stage->parts.axes->together)
             break;
     }
@@ -316,10 +315,9 @@ static weft_code move(void *device, weft_angles view, weft_angles light, bool *m
 static weft_code held(void *device, bool *still, weft_error *error)
 {
     weft_stage *stage = ((weft_stage *)device)->body;
-    const weft_axis_driver *driver = &stage->parts.driver;
     *still = true;
-    if (driver->held)
-        WEFT_TRY(driver->held(driver->device, still, error));
+    if (stage->parts.controller)
+        WEFT_TRY(weft_controller_held(stage->parts.controller, still, error));
     if (!*still)
         forget_places(stage);
     return WEFT_OK;
@@ -328,8 +326,8 @@ static weft_code held(void *device, bool *still, weft_error *error)
 static void stop(void *device)
 {
     weft_stage *stage = ((weft_stage *)device)->body;
-    if (stage->parts.driver.stop)
-        stage->parts.driver.stop(stage->parts.driver.device);
+    if (stage->parts.controller)
+        weft_controller_stop(stage->parts.controller);
     forget_places(stage);
 }
 

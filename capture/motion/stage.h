@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_MOTION_STAGE_H
 #define WEFT_CAPTURE_MOTION_STAGE_H
 
-#include "capture/motion/driver.h"
+#include "capture/motion/controller.h"
 #include "capture/rig.h"
 
 /* Somebody who does what no motor does. Blocks until it is done. Errors: WEFT_SYSTEM where nobody is there. */
@@ -14,9 +14,9 @@ typedef struct weft_operator {
 /* All borrowed. */
 typedef struct weft_stage_parts {
     const weft_axes *axes;
-    weft_axis_driver driver; /* of all axes that are not turned by hand; `home` NULL: there are none */
-    weft_lamp_switch lamps;  /* `set` NULL: the light burns anyway */
-    const weft_angles *lamp; /* [lamp_count] directions in the laboratory; 0: one lamp, wherever the axes put it */
+    weft_controller *controller; /* of all axes that no operator turns; NULL: there are none */
+    weft_lamp_switch lamps;      /* `set` NULL: the light burns anyway */
+    const weft_angles *lamp;     /* [lamp_count] directions in the laboratory; 0: one lamp, wherever the axes put it */
     int lamp_count;
     double lamp_tolerance_rad; /* by which a lamp may differ from a light of the plan */
     double level, warm_up_s;   /* of the lamps, from 0 to 1; and how long they take to burn evenly */

@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "capture/firmware/protocol.h"
 
+#include <hidapi.h>
 #include <signal.h>
 #include <stdbool.h>
 
@@ -20,7 +21,6 @@ typedef struct weft_usb_link {
     const volatile sig_atomic_t *stop; /* borrowed; NULL: never */
     void *handle;                      /* of hidapi; NULL: not open */
     uint16_t sequence;
-    int lost, damaged, stale; /* counted: answers that did not come, came broken, or were of another question */
 } weft_usb_link;
 
 typedef enum weft_link_outcome {
@@ -37,5 +37,11 @@ void weft_usb_link_close(weft_usb_link *link);
 /* Asks, and asks again under the same sequence number where no sound answer comes within timeout_s, `retries` times.
  * The request's sequence number is set here. */
 weft_link_outcome weft_usb_link_ask(weft_usb_link *link, weft_stage_request *request, weft_stage_reply *reply);
+
+/* ---- Finding a device on USB HID and opening it. ---- */
+
+/* As weft_usb_link_open. The caller closes *handle with hid_close. */
+weft_code weft_hid_open(const weft_usb_address *address, double wait_s, const volatile sig_atomic_t *stop,
+                        hid_device **handle, weft_error *error);
 
 #endif

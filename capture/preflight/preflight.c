@@ -156,14 +156,14 @@ static weft_code fly(flight *f, weft_error *error)
     return code;
 }
 
-weft_code weft_preflight_run(const weft_preflight_request *request, weft_rig *rig, const weft_progress *progress,
+weft_code weft_preflight_run(const weft_capture_request *request, weft_rig *rig, const weft_progress *progress,
                              weft_preflight *result, weft_error *error)
 {
     weft_capture_rehearsal rehearsal;
     *result = (weft_preflight){0};
-    WEFT_TRY(weft_capture_rehearse(request->capture, rig, &rehearsal, error));
-    check_disk(request->capture->folder, (double)rehearsal.bytes * 1e-9, result);
-    check_calibration(request->lens, result);
+    WEFT_TRY(weft_capture_rehearse(request, rig, &rehearsal, error));
+    check_disk(request->folder, (double)rehearsal.bytes * 1e-9, result);
+    check_calibration(rig->lens_path, result);
     flight f = {.rig = rig, .session = &rehearsal.session, .progress = progress, .result = result};
     weft_code code = fly(&f, error);
     weft_capture_rehearsal_free(&rehearsal);

@@ -44,11 +44,6 @@ typedef struct weft_preflight_meaning {
 
 extern const weft_preflight_meaning weft_preflight_meaning_of[WEFT_CHECK_KINDS];
 
-typedef struct weft_preflight_request {
-    const weft_capture_request *capture;
-    const char *lens; /* file of the calibration; NULL: there is none */
-} weft_preflight_request;
-
 typedef struct weft_preflight {
     weft_preflight_check check[WEFT_CHECK_KINDS];
     double disk_needed; /* GB */
@@ -61,7 +56,7 @@ typedef struct weft_preflight {
  * light. Takes two photographs with the lamp, one with a quarter of the exposure, and one without the lamp; in the
  * first view one more without, as long as the rig exposes. Writes nothing. The caller frees with weft_preflight_free.
  * Errors: those of the plan and of the rig; WEFT_SYSTEM. A check that is not passed is none. */
-weft_code weft_preflight_run(const weft_preflight_request *request, weft_rig *rig, const weft_progress *progress,
+weft_code weft_preflight_run(const weft_capture_request *request, weft_rig *rig, const weft_progress *progress,
                              weft_preflight *result, weft_error *error);
 void weft_preflight_free(weft_preflight *result);
 

@@ -2,7 +2,6 @@
 
 #include "capture/print/dictionary_bridge.h"
 #include "capture/print/page.h"
-#include "capture/print/ruler.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -3,7 +3,7 @@
 #ifndef WEFT_CAPTURE_PRINT_LENS_BOARD_H
 #define WEFT_CAPTURE_PRINT_LENS_BOARD_H
 
-#include "capture/print/paper.h"
+#include "capture/print/page.h"
 
 typedef struct weft_lens_board {
     weft_paper paper;

@@ -5,7 +5,25 @@
 
 #include "base/status.h"
 #include "btf/session/target.h"
-#include "capture/print/paper.h"
+
+#include <stdbool.h>
+
+/* ---- Sheets of paper, as printers take them. ---- */
+
+typedef struct weft_paper {
+    char name[32]; /* as printed on it */
+    double width_mm, height_mm;
+} weft_paper;
+
+/* What every printer leaves empty along the edges of a page, mm. */
+extern const double weft_paper_margin_mm;
+
+/* "A4", "letter" (in any case) or "WxH" in mm, each side from 40 to 2000. Errors: WEFT_BAD_USAGE naming --paper. */
+weft_code weft_paper_parse(const char *text, weft_paper *paper, weft_error *error);
+
+/* Sides of what can be printed on, mm. Pure. */
+double weft_paper_printable_width(const weft_paper *paper);
+double weft_paper_printable_height(const weft_paper *paper);
 
 typedef struct weft_print_page weft_print_page;
 
@@ -45,5 +63,19 @@ double weft_print_text(weft_print_page *page, double x, double y, double size_mm
 
 /* Of all that follows, 0: black, 1: white. */
 void weft_print_grey(weft_print_page *page, double level);
+
+/* ---- Bars with millimetre ticks, to be held against a ruler. ---- */
+
+typedef struct weft_ruler {
+    double x, y;      /* of its middle on the line that the ticks stand on, mm */
+    bool upright;     /* along y, ticks toward +x; else along x, ticks toward +y */
+    double length_mm; /* between the middles of the first and the last tick, a multiple of 10 */
+    double scale;     /* of ticks and numbers */
+} weft_ruler;
+
+/* What it covers, numbers included. Pure. */
+weft_rectangle weft_ruler_outline(const weft_ruler *ruler);
+
+void weft_ruler_draw(const weft_ruler *ruler, weft_print_page *page);
 
 #endif

@@ -1,4 +1,4 @@
-#include "capture/print/ruler.h"
+#include "capture/print/page.h"
 
 #include <math.h>
 #include <stdio.h>

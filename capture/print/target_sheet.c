@@ -1,7 +1,6 @@
 #include "capture/print/target_sheet.h"
 
 #include "capture/print/page.h"
-#include "capture/print/ruler.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_PRINT_TARGET_SHEET_H
 #define WEFT_CAPTURE_PRINT_TARGET_SHEET_H
 
-#include "capture/print/paper.h"
+#include "capture/print/page.h"
 
 typedef struct weft_target_sheet_settings {
     weft_paper paper;

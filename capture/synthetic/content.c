@@ -1,4 +1,4 @@
-#include "capture/synthetic/content.h"
+#include "capture/synthetic/scene.h"
 
 #include "capture/virtual/ground_truth.h"
 

@@ -1,4 +1,4 @@
-#include "capture/synthetic/develop.h"
+#include "capture/synthetic/plan.h"
 
 #include "capture/virtual/sensor.h"
 

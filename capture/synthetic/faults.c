@@ -1,4 +1,4 @@
-#include "capture/synthetic/faults.h"
+#include "capture/synthetic/plan.h"
 
 const char *weft_synthetic_fault_name(weft_synthetic_fault fault)
 {

@@ -1,4 +1,4 @@
-#include "capture/synthetic/lamp.h"
+#include "capture/synthetic/scene.h"
 
 double weft_synthetic_lamp_toward(const weft_synthetic_lamp *lamp, weft_vec3 point)
 {

@@ -1,4 +1,4 @@
-#include "capture/synthetic/lens.h"
+#include "capture/synthetic/scene.h"
 
 static const double field_end = 1.1;
 

@@ -1,8 +1,5 @@
 #include "capture/synthetic/plan.h"
 
-#include "capture/synthetic/dice.h"
-#include "capture/synthetic/faults.h"
-
 #include <stdio.h>
 
 weft_synthetic_request weft_synthetic_request_default(void)

@@ -3,9 +3,42 @@
 #ifndef WEFT_CAPTURE_SYNTHETIC_PLAN_H
 #define WEFT_CAPTURE_SYNTHETIC_PLAN_H
 
-#include "capture/synthetic/develop.h"
-#include "capture/synthetic/lens.h"
+#include "base/status.h"
 #include "capture/synthetic/scene.h"
+#include "capture/virtual/random.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* ---- From light to the numbers of a file: exposure, the sensor's noise, white balance and the tone curve of the camera. ---- */
+
+/* Tone curves of cameras. */
+typedef enum weft_synthetic_curve {
+    WEFT_SYNTHETIC_CONTRAST, /* t = x^2 / (x + 0.002), then t^n / (t^n + m) over the same at x = 1, n = 0.85, m = 0.4^n:
+                           a toe, and a shoulder (the response of Naka and Rushton 1966). Darker than sRGB in the dark
+                         */
+    WEFT_SYNTHETIC_SOFT      /* ((1 - e^-2x) / (1 - e^-2))^(1/2.2): grains that are hit or not (Poisson), on a screen of
+                           gamma 2.2. Brighter than sRGB in the dark */
+} weft_synthetic_curve;
+
+typedef struct weft_synthetic_exposure {
+    double seconds, f_number, iso; /* as the camera says */
+    double gain;                   /* part of the sensor's range that 1 cd/m^2 fills, truly */
+    double white_balance[3];       /* multiplies the channels behind the sensor; green is 1 */
+} weft_synthetic_exposure;
+
+/* gain = seconds iso / (120 f_number^2): the sensor is full where ISO 12232 has it (78 / iso lux seconds, with 0.65 of
+ * the light on the axis). The shutter makes it a little more or less. Pure. */
+double weft_synthetic_gain(double seconds, double f_number, double iso);
+
+/* linear [count] 0..1 = what the sensor reads of radiance [count] (count = 3 pixels), black level taken off, white
+ * balance applied, clipped: 14 bits, shot and read noise (capture/virtual/sensor.h). `key` alone decides the noise.
+ * Parallel. Errors: WEFT_SYSTEM. */
+weft_code weft_synthetic_sense(const weft_synthetic_exposure *exposure, const float *radiance, size_t count,
+                               uint64_t key, float *linear, weft_error *error);
+
+/* The tone curve of the camera's JPEG, 0..1 to 0..1. Pure. */
+double weft_synthetic_tone(weft_synthetic_curve curve, double linear);
 
 typedef enum weft_synthetic_set {
     WEFT_SYNTHETIC_FREE,   /* camera in one hand, lamp in the other */
@@ -80,5 +113,43 @@ weft_synthetic_scene weft_synthetic_scene_of(const weft_synthetic_request *reque
                                              const weft_synthetic_sheet *sheet, const weft_synthetic_content *content);
 
 const char *weft_synthetic_fault_name(weft_synthetic_fault fault);
+
+/* ---- Random numbers of one synthetic photograph, in the order in which they are asked for. ---- */
+
+enum { WEFT_DICE_CHANCES = 4096 }; /* random numbers of a photograph */
+
+typedef struct weft_dice {
+    uint64_t seed, next;
+} weft_dice;
+
+/* Those of a photograph; what all share has negative ones. */
+static inline weft_dice weft_dice_of(uint64_t seed, int photograph)
+{
+    return (weft_dice){seed, (uint64_t)photograph * WEFT_DICE_CHANCES};
+}
+
+/* Uniform in [low, high). */
+static inline double weft_dice_between(weft_dice *d, double low, double high)
+{
+    return low + (high - low) * weft_random_uniform(d->seed, WEFT_RANDOM_HAND, d->next++);
+}
+
+/* Normal, with a mean of 0. */
+static inline double weft_dice_normal(weft_dice *d, double deviation)
+{
+    return deviation * weft_random_normal(d->seed, WEFT_RANDOM_HAND, d->next++);
+}
+
+/* ---- What goes wrong with photographs of a hand. ---- */
+
+/* The rubbish lies evenly among the photographs, each kind in turn. Pure. */
+weft_synthetic_fault weft_synthetic_fault_of(const weft_synthetic_request *request, int photograph);
+
+/* Where the hand of a shot is. One that shades keeps out of the picture of the opening if it can; one over the plate
+ * does not. Pure. */
+void weft_synthetic_place_hand(const weft_synthetic_request *request, weft_dice *d, weft_synthetic_shot *shot);
+
+/* What the fault of a shot does to its exposure and its pose. Pure. */
+void weft_synthetic_spoil(weft_dice *d, weft_synthetic_shot *shot);
 
 #endif

@@ -1,7 +1,5 @@
 #include "capture/synthetic/scene.h"
 
-#include "capture/synthetic/lens.h"
-
 static const double ball_radius = 10, pin_height = 30, pin_radius = 0.4, pin_head_radius = 1.5;
 static const weft_rgb chrome = {0.66, 0.66, 0.67}, steel = {0.35, 0.35, 0.36}, skin = {0.55, 0.37, 0.28};
 

@@ -1,4 +1,4 @@
-#include "capture/synthetic/sheet.h"
+#include "capture/synthetic/scene.h"
 
 #include "capture/virtual/random.h"
 

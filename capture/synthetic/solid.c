@@ -1,4 +1,4 @@
-#include "capture/synthetic/solid.h"
+#include "capture/synthetic/scene.h"
 
 static double meet_ball(weft_vec3 centre, double radius, weft_vec3 from, weft_vec3 along)
 {

@@ -1,8 +1,7 @@
 #include "capture/synthetic/synthetic.h"
 
 #include "base/atomic_file.h"
-#include "capture/synthetic/render.h"
-#include "capture/synthetic/truth.h"
+#include "capture/synthetic/scene.h"
 #include "capture/virtual/random.h"
 
 #include <dirent.h>

@@ -7,6 +7,8 @@
 #include "base/progress.h"
 #include "capture/synthetic/plan.h"
 
+#include <limits.h>
+
 /* One photograph as the file holds it, 0..1; the caller frees it. Parallel. Errors: WEFT_SYSTEM. */
 weft_code weft_synthetic_take(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
                               const weft_synthetic_content *content, weft_image *image, weft_error *error);
@@ -17,5 +19,27 @@ weft_code weft_synthetic_take(const weft_synthetic_request *request, const weft_
  * a folder that holds something; those of weft_synthetic_content_read; WEFT_SYSTEM. */
 weft_code weft_synthetic_run(const weft_synthetic_request *request, const weft_progress *progress,
                              char warning[WEFT_MESSAGE_SIZE], weft_error *error);
+
+/* ---- The truth beside a folder of photographs: what registration must find, in files that it never reads. ---- */
+
+/* FOLDER and an ending, whether or not the folder was written with a slash behind it. */
+void weft_synthetic_beside(const char *folder, const char *ending, char path[PATH_MAX]);
+
+/* FOLDER.truth.json: docs/reference/synthetic.md. Errors: WEFT_SYSTEM. */
+weft_code weft_synthetic_truth_write(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
+                                     weft_error *error);
+
+/* FOLDER.truth.btf.h5: the true reflectance of the content under the lamp and the camera of every photograph, as near
+ * positions; the images of rubbish are masked. Parallel. Errors: WEFT_SYSTEM. */
+weft_code weft_synthetic_truth_write_reflectance(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
+                                                 const weft_synthetic_content *content, const weft_progress *progress,
+                                                 weft_error *error);
+
+/* What a person would note down. Of a tripod FOLDER.lp: the number of photographs, then a line for each, its name and
+ * the direction of the lamp from the middle of the sheet, in the frame of the sheet (as Polynomial Texture Mapping has
+ * it). Of a table FOLDER.steps.csv: name, theta_deg and phi_deg of the view as the table says. Nothing else. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_synthetic_write_notes(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
+                                     weft_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "capture/synthetic/truth.h"
+#include "capture/synthetic/synthetic.h"
 
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"

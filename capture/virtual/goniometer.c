@@ -1,4 +1,4 @@
-#include "capture/virtual/goniometer.h"
+#include "capture/virtual/world.h"
 
 #include "capture/virtual/random.h"
 

@@ -1,4 +1,4 @@
-#include "capture/virtual/optics.h"
+#include "capture/virtual/view.h"
 
 #include "capture/virtual/random.h"
 

@@ -36,4 +36,14 @@ void weft_virtual_sensor_free(weft_virtual_sensor *sensor);
 void weft_virtual_sensor_read(const weft_virtual_sensor *sensor, const float *radiance, size_t count, double gain,
                               double exposure_s, uint64_t key, uint16_t *samples);
 
+/* ---- What is wrong with the pixels of the virtual sensor. Nothing here is shared with what finds it. ---- */
+
+/* Dark current: that of the usual pixel, with a normal spread, never negative. Hot pixels, by chance, have more:
+ * exponentially distributed with their mean. They blink, as random telegraph noise lets them. Response: normal about 1,
+ * times what specks of dust let through, whose shadows are soft discs 3 to 9 pixels in radius, alike in all channels.
+ * Owned by the caller (weft_virtual_sensor_defects_free), also after a failure. Errors: WEFT_SYSTEM. */
+weft_code weft_virtual_sensor_defects_make(const weft_virtual_settings *settings, uint64_t seed,
+                                           weft_virtual_sensor_defects *faults, weft_error *error);
+void weft_virtual_sensor_defects_free(weft_virtual_sensor_defects *faults);
+
 #endif

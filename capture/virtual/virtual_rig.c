@@ -1,10 +1,10 @@
 #include "capture/virtual/virtual_rig.h"
 
-#include "capture/file_crc.h"
+#include "capture/photograph_writer.h"
 #include "capture/virtual/random.h"
-#include "capture/virtual/ring.h"
 #include "capture/virtual/sensor.h"
 #include "capture/virtual/view.h"
+#include "capture/virtual/world.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -34,4 +34,25 @@ weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles 
  * settings keep free. Pure. */
 bool weft_virtual_world_shadowed(const weft_virtual_world *world, const weft_pose *pose, weft_vec3 light);
 
+/* ---- The goniometer of the virtual rig: a ring on its foot, an arm on the ring, a camera on the arm. Each part is a frame
+ * that is carried by the part before it, and each is off a little. (What calibrates a rig knows lines in the frame of
+ * the plate instead: btf/session/rig_poses.h.) */
+
+/* Rig frame to camera frame, when the scales are driven to `view`. Without errors it is weft_pose_of_view. Pure. */
+weft_pose weft_virtual_goniometer_pose(const weft_virtual_settings *settings, uint64_t seed, weft_angles view);
+
+/* ---- Several virtual cameras: evenly spaced on a ring about the zenith, which carries all of them. It tilts and turns as a
+ * whole, by less than the space between two: so each camera takes the views of one sector of phi. All functions are
+ * pure; with one camera there is no ring. */
+
+/* Which camera takes a view. */
+int weft_virtual_ring_camera(const weft_virtual_world *world, weft_angles view);
+
+/* From where camera `other` sees while that of `world` stands at `view`. */
+weft_angles weft_virtual_ring_view(const weft_virtual_world *world, weft_angles view, int other);
+
+/* Whether one of the other cameras stands between the light (plate frame) and the sample, while that of `world` stands
+ * at `view`. At the zenith there is room for one only. */
+bool weft_virtual_ring_shadows(const weft_virtual_world *world, weft_angles view, weft_vec3 light);
+
 #endif

@@ -1,7 +1,7 @@
 #include "tests/capture/small_session.h"
 
 #include "base/picture/image.h"
-#include "capture/file_crc.h"
+#include "capture/photograph_writer.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 

@@ -72,7 +72,7 @@ static weft_code backwards(void *device, const weft_shot *shot, int count, int *
         numbers[i] = numbers[count - 1 - i];
         numbers[count - 1 - i] = number;
     }
-    *estimate = (weft_stage_estimate){.seconds = 100, .bound_seconds = 90, .moves = count - 1};
+    *estimate = (weft_stage_estimate){.seconds = 100, .moves = count - 1};
     return WEFT_OK;
 }
 

@@ -1,6 +1,5 @@
 /* Cameras of a laboratory: a folder into which another program drops its photographs, and OpenCV's VideoCapture. */
-#include "capture/camera/folder_camera.h"
-#include "capture/camera/video_camera.h"
+#include "capture/camera/camera.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 
@@ -95,16 +94,15 @@ static weft_code take(program_step *work, double fixed_s, double timeout_s, uint
 {
     other_program program = {.work = work, .step = -1};
     const weft_clock clock = {&program, now_of_program, wait_for_program};
-    const weft_folder_camera_settings settings = {
-        .folder = "incoming",
+    const weft_camera_settings settings = {
+        .device = "incoming",
         .pattern = "*.tif",
         .timeout_s = timeout_s,
         .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT, .exposure_s = fixed_s},
         .shutter = {&program, release},
         .clock = &clock};
-    weft_folder_camera *camera;
-    assert_int_equal(weft_folder_camera_create(&settings, &camera, NULL), WEFT_OK);
-    weft_rig_camera rig = weft_folder_camera_for_rig(camera);
+    weft_rig_camera rig;
+    assert_int_equal(weft_folder_camera_open(&settings, &rig, NULL), WEFT_OK);
     /* Came before the release: none of this exposure's. */
     write_picture("before.tif", WIDTH * BIN, HEIGHT * BIN, 7);
     assert_int_equal(rename("before.tif", "incoming/before.tif"), 0);
@@ -113,7 +111,7 @@ static weft_code take(program_step *work, double fixed_s, double timeout_s, uint
     assert_float_equal(program.exposure_s, 0.25, 0);
     if (original)
         snprintf(original, 64, "%s", rig.original(rig.device));
-    weft_folder_camera_free(camera);
+    rig.close(rig.device);
     return code;
 }
 
@@ -226,10 +224,10 @@ static void what_cannot_be_a_frame_is_named_when_the_time_is_up(void **state)
 static void a_folder_that_is_not_there_is_named(void **state)
 {
     (void)state;
-    const weft_folder_camera_settings settings = {.folder = "nowhere", .pattern = "*"};
-    weft_folder_camera *camera;
+    const weft_camera_settings settings = {.device = "nowhere", .pattern = "*"};
+    weft_rig_camera rig;
     weft_error error = {0};
-    assert_int_equal(weft_folder_camera_create(&settings, &camera, &error), WEFT_SYSTEM);
+    assert_int_equal(weft_folder_camera_open(&settings, &rig, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "'nowhere'"));
 }
 
@@ -239,22 +237,21 @@ static void nothing_is_released_after_a_stop(void **state)
     (void)state;
     const volatile sig_atomic_t stop = 1;
     other_program program = {.work = drop_whole};
-    const weft_folder_camera_settings settings = {.folder = "incoming",
-                                                  .pattern = "*.tif",
-                                                  .timeout_s = 10,
-                                                  .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT},
-                                                  .shutter = {&program, release},
-                                                  .stop = &stop};
+    const weft_camera_settings settings = {.device = "incoming",
+                                           .pattern = "*.tif",
+                                           .timeout_s = 10,
+                                           .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT},
+                                           .shutter = {&program, release},
+                                           .stop = &stop};
     uint16_t samples[VALUES];
     double read_back_s;
-    weft_folder_camera *camera;
+    weft_rig_camera rig;
     weft_error error = {0};
-    assert_int_equal(weft_folder_camera_create(&settings, &camera, NULL), WEFT_OK);
-    weft_rig_camera rig = weft_folder_camera_for_rig(camera);
+    assert_int_equal(weft_folder_camera_open(&settings, &rig, NULL), WEFT_OK);
     assert_int_equal(rig.expose(rig.device, 0, 0.25, samples, &read_back_s, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "stopped"));
     assert_int_equal(program.releases, 0);
-    weft_folder_camera_free(camera);
+    rig.close(rig.device);
 }
 
 /* ---- A video ---- */
@@ -274,14 +271,13 @@ static void frames_of_a_series_come_in_order_until_it_ends(void **state)
         weft_image_free(&image);
     }
     for (int srgb = 0; srgb < 2; srgb++) {
-        const weft_video_camera_settings settings = {
+        const weft_camera_settings settings = {
             .device = "frame_%02d.png",
             .format = {.bin = 1, .width = WIDTH, .height = HEIGHT, .srgb = srgb, .exposure_s = 0.02}};
-        weft_video_camera *camera;
+        weft_rig_camera rig;
         weft_error error = {0};
-        if (weft_video_camera_create(&settings, &camera, &error) != WEFT_OK)
+        if (weft_video_camera_open(&settings, &rig, &error) != WEFT_OK)
             fail_msg("%s", error.message);
-        weft_rig_camera rig = weft_video_camera_for_rig(camera);
         for (int i = 0; i < FRAMES; i++) {
             uint16_t samples[VALUES];
             double read_back_s;
@@ -298,7 +294,7 @@ static void frames_of_a_series_come_in_order_until_it_ends(void **state)
         double read_back_s;
         assert_int_equal(rig.expose(rig.device, 0, 0.02, samples, &read_back_s, &error), WEFT_SYSTEM);
         assert_non_null(strstr(error.message, "delivers no frame"));
-        weft_video_camera_free(camera);
+        rig.close(rig.device);
     }
 }
 
@@ -307,10 +303,10 @@ static void a_camera_that_is_not_there_is_named(void **state)
     (void)state;
     static const char *const devices[] = {"97", "no-such.avi"};
     for (int i = 0; i < 2; i++) {
-        const weft_video_camera_settings settings = {.device = devices[i]};
-        weft_video_camera *camera;
+        const weft_camera_settings settings = {.device = devices[i]};
+        weft_rig_camera rig;
         weft_error error = {0};
-        assert_int_equal(weft_video_camera_create(&settings, &camera, &error), WEFT_SYSTEM);
+        assert_int_equal(weft_video_camera_open(&settings, &rig, &error), WEFT_SYSTEM);
         assert_non_null(strstr(error.message, devices[i]));
     }
 }

@@ -1,8 +1,7 @@
 /* Lamps on USB through the real libhidapi: relay boards, and who switches a lamp off when the program is gone. Runs
  * under umockdev-wrapper. */
 #include "capture/motion/controller.h"
-#include "capture/motion/lamp_guard.h"
-#include "capture/motion/relay.h"
+#include "capture/motion/lamps.h"
 #include "tests/capture/fake_controller.h"
 #include "tests/support/cmocka_all.h"
 

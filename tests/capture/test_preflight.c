@@ -166,7 +166,6 @@ static weft_preflight check(fault injected)
 {
     const weft_virtual_request request = request_of();
     const weft_capture_request capture = {.folder = "session", .plan = "plan.csv"};
-    const weft_preflight_request preflight = {&capture, "plan.csv"};
     weft_virtual_rig rig;
     weft_preflight result;
     weft_error error = {0};
@@ -175,12 +174,13 @@ static weft_preflight check(fault injected)
     faulty f = {
         .rig = &rig, .camera = rig.rig.camera, .light = rig.rig.light, .stage = rig.rig.stage, .fault = injected};
     weft_rig wrapped = rig.rig;
+    wrapped.lens_path = "plan.csv";
     wrapped.camera = (weft_rig_camera){.device = &f, .expose = expose};
     wrapped.stage = (weft_rig_stage){.device = &f, .home = home, .move = move};
     wrapped.light = (weft_rig_light){&f, power};
     /* So a white patch clips that cannot be exposed for. */
     wrapped.settings.shortest_exposure_s = injected == WHITE_CLIPPED ? 1.0 / 60 : wrapped.settings.shortest_exposure_s;
-    expect_ok(weft_preflight_run(&preflight, &wrapped, NULL, &result, &error), &error);
+    expect_ok(weft_preflight_run(&capture, &wrapped, NULL, &result, &error), &error);
     for (int kind = 0; kind < WEFT_CHECK_KINDS; kind++)
         print_message("%d %s %s %g\n", (int)injected, weft_preflight_meaning_of[kind].name,
                       !result.check[kind].done    ? "-"

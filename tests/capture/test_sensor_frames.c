@@ -1,4 +1,4 @@
-#include "capture/sensor_frames.h"
+#include "capture/shooting.h"
 
 #include "base/picture/image.h"
 #include "capture/session_check.h"

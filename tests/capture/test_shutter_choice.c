@@ -1,5 +1,5 @@
 /* Exposure times as cameras name them; against what eight real cameras offer. */
-#include "capture/camera/shutter_choice.h"
+#include "capture/camera/camera.h"
 #include "tests/support/cmocka_all.h"
 
 #include <ctype.h>

@@ -1,5 +1,5 @@
-#include "capture/synthetic/lens.h"
 #include "capture/synthetic/plan.h"
+#include "capture/synthetic/scene.h"
 #include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>

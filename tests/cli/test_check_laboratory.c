@@ -208,8 +208,7 @@ static weft_preflight check(UMockdevTestbed *testbed, fault injected)
     expect_ok(weft_laboratory_open(&request, &laboratory, &error), &error);
     expect_ok(weft_laboratory_connect(laboratory, &error), &error);
     weft_rig *rig = weft_laboratory_rig(laboratory);
-    const weft_preflight_request preflight = {&capture, weft_laboratory_lens(laboratory, rig)};
-    expect_ok(weft_preflight_run(&preflight, rig, NULL, &result, &error), &error);
+    expect_ok(weft_preflight_run(&capture, rig, NULL, &result, &error), &error);
     weft_laboratory_close(laboratory);
     close_studio(&s);
     return result;

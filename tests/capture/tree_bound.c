@@ -1,4 +1,6 @@
-#include "capture/axes/path.h"
+#include "tests/capture/tree_bound.h"
+
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +9,6 @@ typedef struct tree {
     const weft_axes *axes;
     const weft_axis_positions *pose;
     int count;
-    const int *number;
     double slope[WEFT_AXES_MAX]; /* of the potential, seconds a degree */
     double *least;               /* [count] cost of the cheapest edge to the tree; -1: in it */
     int *toward;                 /* [count] where that edge leads */
@@ -15,7 +16,7 @@ typedef struct tree {
 
 static const weft_axis_positions *pose_of(const tree *t, int i)
 {
-    return &t->pose[t->number[i]];
+    return &t->pose[i];
 }
 
 static double potential_step(const tree *t, const weft_axis_positions *a, const weft_axis_positions *b)
@@ -110,23 +111,17 @@ static double range_of_potential(const tree *t)
     return high - low;
 }
 
-weft_code weft_tree_bound(const weft_axes *axes, const weft_axis_positions *pose, int count, const int *number,
-                          double *seconds, weft_error *error)
+double tree_bound(const weft_axes *axes, const weft_axis_positions *pose, int count)
 {
-    tree t = {.axes = axes, .pose = pose, .count = count, .number = number};
+    tree t = {.axes = axes, .pose = pose, .count = count};
+    steps s;
     t.least = malloc((size_t)count * sizeof *t.least);
     t.toward = calloc((size_t)count, sizeof *t.toward);
-    weft_code code = WEFT_OK;
-    if (!t.least || !t.toward) {
-        code = weft_fail_memory(error, "order of the poses", (size_t)count * sizeof *t.least);
-    } else {
-        steps s;
-        double even = grow(&t, &s);
-        choose_slopes(&t, &s);
-        double sloped = grow(&t, &s) - range_of_potential(&t);
-        *seconds = fmax(even, sloped);
-    }
+    assert_true(t.least && t.toward);
+    double even = grow(&t, &s);
+    choose_slopes(&t, &s);
+    double sloped = grow(&t, &s) - range_of_potential(&t);
     free(t.least);
     free(t.toward);
-    return code;
+    return fmax(even, sloped);
 }
