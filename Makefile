@@ -65,7 +65,8 @@ references:
 	$(python) tests/data/generate/reference_values.py --conditions
 	$(python) tests/data/generate/foreign_dataset.py
 	$(python) tests/data/generate/bonn_files.py
-	$(python) tests/data/generate/layer_files.py
+	$(python) tests/data/generate/component_files.py
+	$(python) tests/data/generate/material_files.py
 
 # Worst-case errors of every model, by search against binary128: remakes the tables of docs/notes/numerics.md.
 numerics: build

@@ -1,6 +1,6 @@
 #include "btf/file_kind.h"
 
-#include "btf/material/format.h"
+#include "btf/material/file.h"
 
 #include <fcntl.h>
 #include <stdbool.h>

@@ -53,9 +53,9 @@ static void say_reach(const weft_common_options *common, const weft_prune_report
         r->span_count, r->level_low, r->level_high, percent(r->view_cells), percent(r->light_cells));
     weft_command_say(common, "levels    the finest %d and the coarsest %d are gone; %.1f %% of the texels are seen",
                      r->finer_levels, r->coarser_levels, percent(r->texels));
-    if (r->views.of > 0 || r->lights.of > 0)
-        weft_command_say(common, "tables    %ld of %ld views, %ld of %ld lights; %ld lobes of texels are gone",
-                         r->views.kept, r->views.of, r->lights.kept, r->lights.of, r->lobes_gone);
+    if (r->views.of > 0)
+        weft_command_say(common, "table     %ld of %ld views; %ld lobes of texels are gone", r->views.kept, r->views.of,
+                         r->lobes_gone);
     if (r->components.of > 0)
         weft_command_say(common, "components    %ld of %ld; %ld of %ld images; values rounded to %.2g of reflectance",
                          r->components.kept, r->components.of, r->images.kept, r->images.of, r->value_step);
@@ -162,7 +162,7 @@ const weft_command weft_command_prune = {
     .usage = "NAME.weft -o SMALL.weft",
     .documentation =
         "Example: weft prune silk.weft --settings shot.png --path turn.csv -o silk-shot.weft\n\n"
-        "Removes the mip levels, texels, views, lights and lobes of a material that the pictures of one scene "
+        "Removes the mip levels, texels, views and lobes of a material that the pictures of one scene "
         "can never reach, and data that changes them by less than the allowed error. Mesh, camera, lights and "
         "size of the picture are given as for weft render.",
     .options = option_table,

@@ -94,10 +94,9 @@ static weft_code look(const render_command *command, weft_player *player, weft_s
     WEFT_TRY(weft_describe_unmeasured(settings, player, scene, text, error));
     if (text[0])
         weft_command_say(common, "%s", text);
-    if (weft_player_layer_count(player) > 0 && scene->components >= WEFT_COMPONENTS_GROUP && asks_of_lobes(scene))
-        weft_command_say(common,
-                         "the material is drawn by its components: --lobes-on, --tables and --table-bits change "
-                         "nothing without --components 0");
+    if (weft_player_drawn_components(player, scene) > 0 && asks_of_lobes(scene))
+        weft_command_say(common, "the material is drawn by its components: --lobes-on, --tables and --table-bits "
+                                 "change nothing");
     return WEFT_OK;
 }
 

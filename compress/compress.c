@@ -69,7 +69,7 @@ weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const 
     return WEFT_COMPRESS_SPARSE;
 }
 
-/* Opacity lies in T: where the dataset has some, components have a T beside them that is 1. */
+/* Opacity lies in the table of views: components have one where the dataset has some. */
 static weft_code create_material(const weft_dataset *dataset, const weft_compress_options *options,
                                  const weft_compress_report *report, weft_material *material, weft_error *error)
 {
@@ -77,8 +77,12 @@ static weft_code create_material(const weft_dataset *dataset, const weft_compres
     bool for_opacity = report->model == WEFT_COMPRESS_COMPONENTS && weft_dataset_has_opacity(dataset);
     int views =
         report->model == WEFT_COMPRESS_TABLE || (for_opacity && may_have_table(layout)) ? layout->view_count : 0;
-    WEFT_TRY(weft_material_create(layout->width, layout->height, report->lobe_count, views, 0, options->levels,
-                                  material, error));
+    if (report->model == WEFT_COMPRESS_COMPONENTS)
+        WEFT_TRY(
+            weft_material_create_without_lobes(layout->width, layout->height, views, options->levels, material, error));
+    else
+        WEFT_TRY(weft_material_create(layout->width, layout->height, report->lobe_count, views, 0, options->levels,
+                                      material, error));
     material->texel_pitch_mm = layout->texel_pitch_mm;
     for (int view = 0; view < views; view++)
         material->view[view] = weft_unit(layout->view[view]);

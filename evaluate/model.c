@@ -55,6 +55,8 @@ static weft_code open_material(weft_model *model, const char *path, const weft_m
                                weft_error *error)
 {
     WEFT_TRY(weft_material_read(path, &model->material, error));
+    if (options->lobes && !model->material.has_lobes)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' has components alone, no lobes", path);
     if (options->interval)
         WEFT_TRY(open_certificate(model, path, options, error));
     if (model->material.components && !options->lobes)

@@ -7,7 +7,6 @@
 #include "btf/direction/direction.h"
 #include "btf/file_kind.h"
 #include "btf/material/held_out.h"
-#include "btf/material/models.h"
 #include "btf/session/camera_list.h"
 #include "geometry/yarn/tile_mesh.h"
 #include "inspect/verify.h"
@@ -57,28 +56,6 @@ static json_t *parsed(const char *text)
 
 /* ---- Material ---- */
 
-/* Texels of a level with each model, by its name. */
-static json_t *describe_models(const weft_material *material, int k)
-{
-    long count[WEFT_MODEL_CODES];
-    json_t *models = json_object();
-    weft_material_count_models(material, k, count);
-    for (int code = 0; code < WEFT_MODEL_CODES; code++) {
-        char name[WEFT_MODEL_NAME];
-        weft_model_print(weft_model_decode((uint8_t)code), name);
-        if (count[code] > 0)
-            weft_json_put(&models, name, json_integer((json_int_t)count[code]));
-    }
-    return models;
-}
-
-/* Nothing where tables are stored by themselves. */
-static void put_basis(json_t **level, const char *name, const weft_table_basis *basis)
-{
-    if (basis)
-        weft_json_put(level, name, json_integer(basis->component_count));
-}
-
 static json_t *describe_level(const weft_material *material, int k)
 {
     const weft_material_level *level = &material->level[k];
@@ -91,12 +68,8 @@ static json_t *describe_level(const weft_material *material, int k)
     weft_json_put(&described, "rmse", json_real(e->rmse));
     weft_json_put(&described, "relative_rmse", json_real(e->relative_rmse));
     weft_json_put(&described, "psnr_db", weft_json_number(e->psnr_db));
-    put_basis(&described, "components_of_T", level->table_basis);
-    put_basis(&described, "components_of_S", level->light_table_basis);
     if (material->components)
         weft_json_put(&described, "errors_of", json_string(weft_material_errors_of(material)));
-    if (material->has_models)
-        weft_json_put(&described, "texels_by_model", describe_models(material, k));
     return described;
 }
 
@@ -162,11 +135,14 @@ static json_t *describe_material(const char *path, const weft_material *material
     for (int i = 0; i < material->level_count; i++)
         weft_json_append(&levels, describe_level(material, i));
     json_t *described =
-        json_pack("{s:s, s:s, s:o, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material",
-                  "relative_rmse", describe_error(material, held_out), "bytes", (json_int_t)weft_file_bytes(path),
-                  "texels", material->level[0].width, material->level[0].height, "lobes", material->lobe_count,
-                  "views_in_table", material->view_count, "lights_in_table", material->light_count, "texel_pitch_mm",
-                  material->texel_pitch_mm, "levels", levels, "metadata", metadata);
+        json_pack("{s:s, s:s, s:o, s:I, s:[ii], s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "relative_rmse",
+                  describe_error(material, held_out), "bytes", (json_int_t)weft_file_bytes(path), "texels",
+                  material->level[0].width, material->level[0].height, "views_in_table", material->view_count,
+                  "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata", metadata);
+    if (material->has_lobes)
+        weft_json_put(&described, "lobes", json_integer(material->lobe_count));
+    if (material->light_count > 0)
+        weft_json_put(&described, "lights_in_table", json_integer(material->light_count));
     if (held_out && held_out->has_certificate)
         weft_json_put(&described, "certificate", describe_certificate(&held_out->certificate));
     if (material->components)
@@ -182,9 +158,7 @@ static weft_code inspect_material(const char *path, json_t **result, weft_error 
     WEFT_TRY(weft_material_read(path, &material, error));
     weft_hold_out held_out;
     bool is_measured = false;
-    weft_code code = weft_verify_material(path, &material, error);
-    if (code == WEFT_OK)
-        code = weft_hold_out_read(material.metadata, &is_measured, &held_out, error);
+    weft_code code = weft_hold_out_read(material.metadata, &is_measured, &held_out, error);
     if (code == WEFT_OK)
         *result = describe_material(path, &material, is_measured ? &held_out : NULL);
     weft_material_free(&material);

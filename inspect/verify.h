@@ -4,13 +4,9 @@
 
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
-#include "btf/material/material.h"
 #include "btf/session/camera_list.h"
 
 #include <jansson.h>
-
-/* All lobes and diffuse terms finite. Errors: WEFT_BAD_INPUT naming level and texel. */
-weft_code weft_verify_material(const char *path, const weft_material *material, weft_error *error);
 
 /* Every valid sample finite, every opacity in 0..1. Puts the counts into description["verified"]. */
 weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progress, json_t *description,

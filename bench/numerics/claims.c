@@ -89,7 +89,6 @@ static const numerics_claim claims[NUMERICS_MODELS] = {
     [NUMERICS_STORED_8_BITS] = {"T or S in 8 bits", 0.2, 0, 0, 0, 0, 0, 1, ""},
     [NUMERICS_STORED_6_BITS] = {"T or S in 6 bits", 1, 0, 0, 0, 0, 0, 1, ""},
     [NUMERICS_STORED_4_BITS] = {"T or S in 4 bits", 5, 0, 0, 0, 0, 0, 1, ""},
-    [NUMERICS_STORED_COMPONENTS] = {"T or S by 4 components", 0.02, 0, 0, 0, 0, 0, 1, ""},
     [NUMERICS_STORED_NORMAL] = {"n_z of a frame in 16 bits", 10, 0, 0, 0, 0, 0, 1, ""},
 };
 

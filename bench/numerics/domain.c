@@ -141,12 +141,6 @@ static const numerics_argument weave_brdf[] = {
 static const numerics_argument weave_mean[] = {YARN, PAIR};
 static const numerics_argument half[] = {{"x", NUMERICS_LOGARITHMIC, 1e-8, 6e4, 0}};
 static const numerics_argument code[] = {{"T", NUMERICS_EXPONENT, 1e-6, 1, 0}};
-#define SHARE(name)                                                                                                    \
-    {                                                                                                                  \
-        name, NUMERICS_LINEAR, -1, 1, 0                                                                                \
-    }
-static const numerics_argument components[] = {
-    {"direction", NUMERICS_WHOLE, 0, 80, 0}, SHARE("c1"), SHARE("c2"), SHARE("c3"), SHARE("c4")};
 static const numerics_argument normal[] = {{"n", NUMERICS_DIRECTION, 0, 0, 0}};
 
 static const numerics_domain domains[NUMERICS_MODELS] = {
@@ -187,7 +181,6 @@ static const numerics_domain domains[NUMERICS_MODELS] = {
     [NUMERICS_STORED_8_BITS] = DOMAIN(NULL, code),
     [NUMERICS_STORED_6_BITS] = DOMAIN(NULL, code),
     [NUMERICS_STORED_4_BITS] = DOMAIN(NULL, code),
-    [NUMERICS_STORED_COMPONENTS] = DOMAIN(NULL, components),
     [NUMERICS_STORED_NORMAL] = DOMAIN(NULL, normal)};
 
 const numerics_domain *numerics_domain_of(numerics_id id)

@@ -62,5 +62,4 @@ const numerics_set NUMERICS_SET = {.name = SET_NAME,
                                                 [NUMERICS_STORED_8_BITS] = numerics_as_it_is,
                                                 [NUMERICS_STORED_6_BITS] = numerics_as_it_is,
                                                 [NUMERICS_STORED_4_BITS] = numerics_as_it_is,
-                                                [NUMERICS_STORED_COMPONENTS] = numerics_components_exactly,
                                                 [NUMERICS_STORED_NORMAL] = numerics_normal_exactly}};

@@ -46,7 +46,6 @@ typedef enum numerics_id {
     NUMERICS_STORED_8_BITS,
     NUMERICS_STORED_6_BITS,
     NUMERICS_STORED_4_BITS,
-    NUMERICS_STORED_COMPONENTS,
     NUMERICS_STORED_NORMAL,
     NUMERICS_MODELS
 } numerics_id;
@@ -95,18 +94,6 @@ enum { NUMERICS_SATIN_THETAS = 19, NUMERICS_SATIN_PHIS = 24 };
 static inline double numerics_satin(int theta, int phi)
 {
     return numerics_single(0.0625 + 3.0 / (1 + theta * theta) + theta * (phi % 12) / 1024.0);
-}
-
-/* A table by components (docs/reference/weft-format.md, 3.7), in codes: smooth waves over the directions, as principal
- * components are, each as large as its whole numbers allow. */
-enum { NUMERICS_COMPONENTS = 4, NUMERICS_COMPONENT_DIRECTIONS = 81 };
-static inline double numerics_component_mean(int direction)
-{
-    return 128 + direction % 7;
-}
-static inline double numerics_component(int component, int direction)
-{
-    return (direction * (component + 2) % 32 - 15.5) / 15.5 * (12.0 / (component + 1));
 }
 
 #endif

@@ -181,16 +181,6 @@ numerics_value numerics_as_it_is(const double *a)
     return scaled_value(take(&a), 1);
 }
 
-numerics_value numerics_components_exactly(const double *a)
-{
-    int direction = (int)take(&a);
-    weft_real code = (weft_real)numerics_component_mean(direction);
-    for (int k = 0; k < NUMERICS_COMPONENTS; k++)
-        code += take(&a) * (weft_real)numerics_component(k, direction);
-    code = weft_clamp(code, 0, 255) / 255;
-    return scaled_value(code * code, 1);
-}
-
 numerics_value numerics_normal_exactly(const double *a)
 {
     return scaled_value(take_direction(&a).z, 1);

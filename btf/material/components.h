@@ -119,28 +119,7 @@ static inline uint8_t weft_floor_code(float value)
 /* Number of ceilings of a level. Pure. */
 size_t weft_ceiling_count(int width, int height);
 
-/* ---- The file (docs/reference/weft-format.md, 7) ---- */
-
-/* How the section LAYR has the values. */
-typedef enum weft_components_coding {
-    WEFT_COMPONENTS_AS_THEY_ARE,
-    WEFT_COMPONENTS_BY_DIFFERENCES, /* from the mean of two others, and from green: read, not written */
-    WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES
-} weft_components_coding;
-
-/* Bytes of the section LAYR. Pure. */
-size_t weft_components_header_size(const weft_components *components, weft_components_coding coding);
-
-/* Whether the values may be told by differences: they are whole numbers of -2048 .. 2048. Pure. */
+/* Whether all values are whole numbers of -2048 .. 2048, as a file holds them. Pure. */
 bool weft_components_have_differences(const weft_components *components);
-
-/* Writes the section LAYR to bytes [weft_components_header_size], as they are or by weighted differences. */
-void weft_components_header_write(const weft_components *components, weft_components_coding coding, uint8_t *bytes);
-
-/* Reads a section LAYR of `size` bytes for a material of width x height texels and so many levels. `fault` receives
- * what is wrong with it ("holds ...") or NULL. Errors: WEFT_BAD_INPUT where something is, WEFT_SYSTEM. */
-weft_code weft_components_header_read(const uint8_t *bytes, size_t size, weft_components_coding coding, int width,
-                                      int height, int level_count, weft_components **result, const char **fault,
-                                      weft_error *error);
 
 #endif

@@ -1,37 +1,12 @@
 #include "btf/material/gather.h"
 
-#include "btf/material/format.h"
+#include "btf/material/file.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- Texels that are moved as they are ---- */
-
-/* How the texels of a section lie: planes of `texel_bytes` a texel. */
-typedef struct planes {
-    size_t count, texel_bytes;
-} planes;
-
-static planes planes_of(const weft_material *material, weft_section_kind kind)
-{
-    switch (kind) {
-    case WEFT_SECTION_FRAM:
-        return (planes){1, 3 * sizeof(int16_t)};
-    case WEFT_SECTION_RHO:
-        return (planes){1, 4 * sizeof(weft_half)};
-    case WEFT_SECTION_LOBE:
-        return (planes){3 * (size_t)material->lobe_count, 4 * sizeof(weft_half)};
-    case WEFT_SECTION_TABL:
-        return (planes){(size_t)material->view_count, 4};
-    case WEFT_SECTION_STAB:
-        return (planes){(size_t)material->light_count, 4};
-    case WEFT_SECTION_MODL:
-        return (planes){1, 1};
-    default:
-        return (planes){0, 0};
-    }
-}
 
 static int held_within(int value, int size)
 {
@@ -72,53 +47,31 @@ static void copy_plane(const char *from, char *to, size_t texel_bytes, const siz
         memcpy(to + i * texel_bytes, from + place[i] * texel_bytes, texel_bytes);
 }
 
-static size_t texels_of(const weft_material *material, int level)
+/* Planes of texels of `texel_bytes`. */
+static void copy_planes(const void *from, void *to, size_t count, size_t texel_bytes, size_t from_texels,
+                        const size_t *place, size_t texels)
 {
-    return (size_t)material->level[level].width * (size_t)material->level[level].height;
-}
-
-static void copy_section(const weft_material *from, weft_material *to, weft_section_kind kind, int level,
-                         const size_t *place)
-{
-    const char *source = weft_section_texels(from, kind, level);
-    char *target = weft_section_texels(to, kind, level);
-    planes layout = planes_of(from, kind);
-    for (size_t p = 0; source && target && p < layout.count; p++)
-        copy_plane(source + p * texels_of(from, level) * layout.texel_bytes,
-                   target + p * texels_of(to, level) * layout.texel_bytes, layout.texel_bytes, place,
-                   texels_of(to, level));
-}
-
-static weft_code copy_basis(const weft_table_basis *from, const size_t *place, size_t texels, weft_table_basis **to,
-                            weft_error *error)
-{
-    if (!from)
-        return WEFT_OK;
-    size_t components = (size_t)from->component_count, directions = (size_t)from->direction_count;
-    WEFT_TRY(weft_table_basis_create(from->component_count, from->direction_count, texels, to, error));
-    memcpy((*to)->mean, from->mean, directions * sizeof *from->mean);
-    memcpy((*to)->component, from->component, components * directions * sizeof *from->component);
-    for (size_t p = 0; p < 3 * components; p++)
-        copy_plane((const char *)from->coefficient + p * from->texel_count, (char *)(*to)->coefficient + p * texels, 1,
-                   place, texels);
-    return WEFT_OK;
+    for (size_t p = 0; from && p < count; p++)
+        copy_plane((const char *)from + p * from_texels * texel_bytes, (char *)to + p * texels * texel_bytes,
+                   texel_bytes, place, texels);
 }
 
 static weft_code gather_level(const weft_material *from, const weft_texel_mix *mix, int k, weft_material *to,
                               weft_error *error)
 {
-    size_t texels = texels_of(to, k), *place = calloc(texels, sizeof *place);
+    const weft_material_level *source = &from->level[k];
+    weft_material_level *target = &to->level[k];
+    size_t all = weft_texel_count(from, k), texels = weft_texel_count(to, k), *place = calloc(texels, sizeof *place);
     if (!place)
         return weft_fail_memory(error, "places of texels", texels * sizeof *place);
     find_places(from, to, k, mix, place);
-    for (int kind = WEFT_SECTION_FRAM; kind <= WEFT_SECTION_MODL; kind++)
-        copy_section(from, to, (weft_section_kind)kind, k, place);
-    to->level[k].error = from->level[k].error;
-    weft_code code = copy_basis(from->level[k].table_basis, place, texels, &to->level[k].table_basis, error);
-    if (code == WEFT_OK)
-        code = copy_basis(from->level[k].light_table_basis, place, texels, &to->level[k].light_table_basis, error);
+    copy_planes(source->frame, target->frame, 1, 3 * sizeof *source->frame, all, place, texels);
+    copy_planes(source->diffuse, target->diffuse, 1 + 3 * (size_t)from->lobe_count, 4 * sizeof *source->diffuse, all,
+                place, texels);
+    copy_planes(source->table, target->table, (size_t)from->view_count, 4, all, place, texels);
+    target->error = source->error;
     free(place);
-    return code;
+    return WEFT_OK;
 }
 
 /* ---- Components ---- */
@@ -284,14 +237,10 @@ static weft_code gather_heights(const weft_material *from, const weft_texel_mix 
 
 static weft_code allocate_like(const weft_material *from, int width, int height, weft_material *to, weft_error *error)
 {
-    *to = (weft_material){.has_models = from->has_models,
-                          .has_table_bases = from->has_table_bases,
-                          .has_opacity = from->has_opacity,
-                          .has_components = from->has_components,
-                          .has_floors = from->has_floors,
-                          .texel_pitch_mm = from->texel_pitch_mm};
+    WEFT_TRY(weft_material_check_writable(from, error));
+    *to = (weft_material){.has_lobes = from->has_lobes, .texel_pitch_mm = from->texel_pitch_mm};
     WEFT_TRY(weft_material_set_shape(to, width, height, from->level_count > 1 ? 0 : 1, from->lobe_count,
-                                     from->view_count, from->light_count, error));
+                                     from->view_count, 0, error));
     if (to->level_count > from->level_count)
         return weft_fail(error, WEFT_BAD_USAGE, "%d x %d texels are more than the material has", width, height);
     return weft_material_allocate(to, error);
@@ -301,8 +250,6 @@ static weft_code describe_like(const weft_material *from, weft_material *to, wef
 {
     if (from->view_count > 0)
         memcpy(to->view, from->view, (size_t)from->view_count * sizeof *from->view);
-    if (from->light_count > 0)
-        memcpy(to->light, from->light, (size_t)from->light_count * sizeof *from->light);
     char *metadata = strdup(from->metadata);
     if (!metadata)
         return weft_fail_memory(error, "metadata of the material", strlen(from->metadata));

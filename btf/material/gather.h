@@ -23,7 +23,8 @@ typedef struct weft_texel_mix {
  * level 0 at its centre is, to a whole texel, so that a level that was fitted stays fitted.
  *
  * Errors of levels and metadata are those of `from`. Without mip levels there, there are none here. Errors:
- * WEFT_BAD_USAGE for a size out of range, WEFT_SYSTEM. The caller frees with weft_material_free. */
+ * WEFT_BAD_USAGE for a size out of range or a material that cannot be written, WEFT_SYSTEM. The caller frees with
+ * weft_material_free. */
 weft_code weft_material_gather(const weft_material *from, int width, int height, const weft_texel_mix *mix,
                                weft_material *result, weft_error *error);
 

@@ -1,9 +1,11 @@
 #include "btf/material/material.h"
 
-#include "btf/material/format.h"
+#include "btf/material/file.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+enum { MOST_TEXELS = 16384 /* along a side */ };
 
 static weft_code check_count(const char *what, int count, int least, int most, weft_error *error)
 {
@@ -23,8 +25,8 @@ static int chain_length(int width, int height)
 weft_code weft_material_set_shape(weft_material *material, int width, int height, int level_count, int lobe_count,
                                   int view_count, int light_count, weft_error *error)
 {
-    WEFT_TRY(check_count("width of the material", width, 1, WEFT_FORMAT_MAX_SIDE, error));
-    WEFT_TRY(check_count("height of the material", height, 1, WEFT_FORMAT_MAX_SIDE, error));
+    WEFT_TRY(check_count("width of the material", width, 1, MOST_TEXELS, error));
+    WEFT_TRY(check_count("height of the material", height, 1, MOST_TEXELS, error));
     WEFT_TRY(check_count("number of lobes", lobe_count, 0, WEFT_MATERIAL_MAX_LOBES, error));
     WEFT_TRY(check_count("number of views", view_count, 0, WEFT_MATERIAL_MAX_VIEWS, error));
     WEFT_TRY(check_count("number of lights", light_count, 0, WEFT_MATERIAL_MAX_LIGHTS, error));
@@ -43,40 +45,36 @@ weft_code weft_material_set_shape(weft_material *material, int width, int height
     return WEFT_OK;
 }
 
-/* Tables that are stored by components are decoded into arrays all the same. */
-static bool has_array(const weft_material *material, weft_section_kind kind)
+static weft_code allocate_array(uint64_t size, void *array, weft_error *error)
 {
-    if (kind == WEFT_SECTION_TABL)
-        return material->view_count > 0;
-    if (kind == WEFT_SECTION_STAB)
-        return material->light_count > 0;
-    return weft_section_levels(material, kind) > 0;
+    void *bytes = NULL;
+    if (size > 0) {
+        bytes = calloc(1, size);
+        if (!bytes)
+            return weft_fail_memory(error, "material", size);
+    }
+    memcpy(array, &bytes, sizeof bytes);
+    return WEFT_OK;
 }
 
-static weft_code allocate_array(const weft_material *material, weft_section_kind kind, int level, void **array,
-                                weft_error *error)
+/* The lobes of a level lie behind its diffuse term, as they do in the file. */
+static weft_code allocate_lobes(const weft_material *material, weft_material_level *level, weft_error *error)
 {
-    if (!has_array(material, kind))
-        return WEFT_OK;
-    uint64_t size = weft_section_size(material, kind, level);
-    *array = calloc(1, size);
-    return *array ? WEFT_OK : weft_fail_memory(error, "material", size);
+    size_t texels = (size_t)level->width * (size_t)level->height, plane = 4 * texels;
+    WEFT_TRY(allocate_array(texels * 3 * sizeof *level->frame, &level->frame, error));
+    WEFT_TRY(allocate_array((1 + 3 * (size_t)material->lobe_count) * plane * sizeof *level->diffuse, &level->diffuse,
+                            error));
+    level->lobe = material->lobe_count > 0 ? level->diffuse + plane : NULL;
+    return WEFT_OK;
 }
 
-static weft_code allocate_level(weft_material *material, int k, weft_error *error)
+static weft_code allocate_level(const weft_material *material, weft_material_level *level, weft_error *error)
 {
-    weft_material_level *level = &material->level[k];
-    void *array[6] = {0};
-    weft_code code = WEFT_OK;
-    for (int i = 0; i < 6 && code == WEFT_OK; i++)
-        code = allocate_array(material, (weft_section_kind)(WEFT_SECTION_FRAM + i), k, &array[i], error);
-    level->frame = array[0];
-    level->diffuse = array[1];
-    level->lobe = array[2];
-    level->table = array[3];
-    level->light_table = array[4];
-    level->model = array[5];
-    return code;
+    uint64_t codes = 4 * (uint64_t)level->width * (uint64_t)level->height;
+    if (material->has_lobes)
+        WEFT_TRY(allocate_lobes(material, level, error));
+    WEFT_TRY(allocate_array(codes * (uint64_t)material->view_count, &level->table, error));
+    return allocate_array(codes * (uint64_t)material->light_count, &level->light_table, error);
 }
 
 static weft_code allocate_directions(int count, weft_vec3 **directions, weft_error *error)
@@ -95,7 +93,7 @@ static weft_code allocate_all(weft_material *material, weft_error *error)
     WEFT_TRY(allocate_directions(material->view_count, &material->view, error));
     WEFT_TRY(allocate_directions(material->light_count, &material->light, error));
     for (int k = 0; k < material->level_count; k++)
-        WEFT_TRY(allocate_level(material, k, error));
+        WEFT_TRY(allocate_level(material, &material->level[k], error));
     return WEFT_OK;
 }
 
@@ -107,25 +105,25 @@ weft_code weft_material_allocate(weft_material *material, weft_error *error)
     return code;
 }
 
-weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
-                               weft_material *material, weft_error *error)
+static weft_code create(bool has_lobes, int width, int height, int lobe_count, int view_count, int light_count,
+                        int with_levels, weft_material *material, weft_error *error)
 {
-    *material = (weft_material){.texel_pitch_mm = 1};
+    *material = (weft_material){.texel_pitch_mm = 1, .has_lobes = has_lobes};
     WEFT_TRY(weft_material_set_shape(material, width, height, with_levels ? 0 : 1, lobe_count, view_count, light_count,
                                      error));
     return weft_material_allocate(material, error);
 }
 
-weft_code weft_material_add_models(weft_material *material, weft_error *error)
+weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
+                               weft_material *material, weft_error *error)
 {
-    material->has_models = true;
-    weft_code code = WEFT_OK;
-    for (int k = 0; k < material->level_count && code == WEFT_OK; k++) {
-        void *model = NULL;
-        code = allocate_array(material, WEFT_SECTION_MODL, k, &model, error);
-        material->level[k].model = model;
-    }
-    return code;
+    return create(true, width, height, lobe_count, view_count, light_count, with_levels, material, error);
+}
+
+weft_code weft_material_create_without_lobes(int width, int height, int view_count, int with_levels,
+                                             weft_material *material, weft_error *error)
+{
+    return create(false, width, height, 0, view_count, 0, with_levels, material, error);
 }
 
 void weft_material_set_ceiling(weft_material_level *level, size_t texel, float value)
@@ -141,26 +139,20 @@ static void free_level(weft_material_level *level)
 {
     free(level->frame);
     free(level->diffuse);
-    free(level->lobe);
     free(level->table);
     free(level->light_table);
-    free(level->model);
-    weft_table_basis_free(level->table_basis);
-    weft_table_basis_free(level->light_table_basis);
 }
 
 void weft_material_take_heights(weft_material *material, weft_material_heights *heights)
 {
     weft_material_heights_free(material->heights);
     material->heights = heights;
-    material->has_heights = heights != NULL;
 }
 
-void weft_material_take_seen(weft_material *material, weft_seen *seen)
+void weft_material_take_visibility(weft_material *material, weft_material_visibility *visibility)
 {
-    weft_seen_free(material->seen);
-    material->seen = seen;
-    material->has_seen = seen != NULL;
+    weft_material_visibility_free(material->visibility);
+    material->visibility = visibility;
 }
 
 void weft_material_drop_finest(weft_material *material)
@@ -174,8 +166,8 @@ void weft_material_drop_finest(weft_material *material)
         weft_components_drop_finest(material->components);
     if (material->heights && --material->heights->level_count == 0)
         weft_material_take_heights(material, NULL);
-    if (material->seen)
-        weft_seen_drop_finest(material->seen);
+    if (material->visibility)
+        weft_material_visibility_drop_finest(material->visibility);
 }
 
 void weft_material_drop_coarsest(weft_material *material)
@@ -195,7 +187,7 @@ void weft_material_free(weft_material *material)
         free_level(&material->level[k]);
     weft_components_free(material->components);
     weft_material_heights_free(material->heights);
-    weft_seen_free(material->seen);
+    weft_material_visibility_free(material->visibility);
     free(material->view);
     free(material->light);
     free(material->metadata);
@@ -204,12 +196,7 @@ void weft_material_free(weft_material *material)
 
 bool weft_material_has_components_alone(const weft_material *material)
 {
-    const weft_material_level *finest = &material->level[0];
-    size_t halves = 4 * (size_t)finest->width * (size_t)finest->height;
-    bool is_black = material->components && material->lobe_count == 0;
-    for (size_t i = 0; is_black && i < halves; i++)
-        is_black = finest->diffuse[i] == 0;
-    return is_black;
+    return material->components && !material->has_lobes;
 }
 
 const char *weft_material_errors_of(const weft_material *material)

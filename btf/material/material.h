@@ -14,8 +14,7 @@
 #include "btf/direction/frame.h"
 #include "btf/material/components.h"
 #include "btf/material/heights.h"
-#include "btf/material/seen.h"
-#include "btf/material/table_basis.h"
+#include "btf/material/visibility.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,56 +26,52 @@ enum {
     WEFT_MATERIAL_MAX_LIGHTS = 4096
 };
 
-/* One mip level, row 0 at the top. Every array is owned by the material. */
+/* One mip level, row 0 at the top. Every array is owned by the material; the first three are NULL without lobes. */
 typedef struct weft_material_level {
     int width, height;
     int16_t *frame;     /* [height][width][3]: n_x, n_y (x 32767; n_z = sqrt(1 - n_x^2 - n_y^2)), azimuth of the tangent
                            about n, from x projected on the tangent plane, / pi (x 32767) */
     weft_half *diffuse; /* [height][width][4]: rho r, g, b; the ceiling of the texel, 0: none */
-    weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N */
+    weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N; lies behind `diffuse` */
     uint8_t *table; /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
-                       NULL where the material has no table (T = 1) */
-    uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused.
-                             NULL where the material has none (S = 1) */
-    weft_table_basis *table_basis, *light_table_basis; /* what the tables were decoded from, where the material
-                                                          has_table_bases; else NULL */
-    uint8_t *model;           /* [height][width]: its model, see btf/material/models.h; NULL where all have the same */
+                       NULL where the material has no views (T = 1, opaque) */
+    uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused. Only
+                             of a file of version 1; else NULL (S = 1) */
     weft_error_summary error; /* the decoded material against the valid samples (reflectance times cosine) that it was
                                  fitted to; its percentiles are accurate to 2 % of their value */
 } weft_material_level;
 
+/* Its reflectance by lobes, by components, or by both, of which components are nearer to the photographs. */
 typedef struct weft_material {
+    bool has_lobes;        /* diffuse terms and frames, and lobe_count lobes */
     int lobe_count;        /* 0..WEFT_MATERIAL_MAX_LOBES */
     int level_count;       /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
-    int view_count;        /* directions of T; 0 without a table */
-    int light_count;       /* directions of S; 0 without a light table */
-    bool has_models;       /* every level says which model each texel has */
-    bool has_table_bases;  /* tables are stored by components, and so */
-    bool has_opacity;      /* are opacities by themselves, if any is below 1 */
-    bool has_components;   /* `components` is, or will be, set */
-    bool has_floors;       /* its components have floors that are not all 0 */
-    bool has_heights;      /* and so are `heights` */
-    bool has_seen;         /* and so is `seen` */
+    int view_count;        /* directions of T and of the opacity; 0 without a table */
+    int light_count;       /* directions of S, which only a file of version 1 has; it is not written */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
-    weft_components *components;    /* the same reflectance a second time, nearer to the photographs; NULL without */
-    weft_material_heights *heights; /* that its components are seen through; NULL without */
-    weft_seen *seen;                /* what of it the scene reaches that it was pruned for; NULL without */
-    char *metadata;                 /* JSON text: provenance, fit settings; never NULL once read */
+    weft_components *components;          /* NULL without */
+    weft_material_heights *heights;       /* that its components are seen through; NULL without */
+    weft_material_visibility *visibility; /* what the scene reaches that it was pruned for; NULL where it was not */
+    char *metadata;                       /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
 
-/* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when
+/* Allocates all arrays of a material of lobes (zeroed) for a level 0 of width x height; full mip chain when
  * `with_levels`, else one level. metadata = "{}". Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
 weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
                                weft_material *material, weft_error *error);
+
+/* The same without diffuse terms, frames and lobes, for components. A table of views holds the opacity alone. */
+weft_code weft_material_create_without_lobes(int width, int height, int view_count, int with_levels,
+                                             weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
 /* Sets the ceiling of a texel: the least half float that is not below `value`; 0 or less: none. Thread-safe. */
 void weft_material_set_ceiling(weft_material_level *level, size_t texel, float value);
 
-/* Takes the finest level away, of components, heights and what is seen, too: the same material with a quarter of the
+/* Takes the finest level away, of components, heights and visibility, too: the same material with a quarter of the
  * texels. Does nothing where there is but one. */
 void weft_material_drop_finest(weft_material *material);
 
@@ -87,12 +82,9 @@ void weft_material_drop_coarsest(weft_material *material);
 void weft_material_take_heights(weft_material *material, weft_material_heights *heights);
 
 /* The same of what a scene reaches of it. */
-void weft_material_take_seen(weft_material *material, weft_seen *seen);
+void weft_material_take_visibility(weft_material *material, weft_material_visibility *visibility);
 
-/* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
-weft_code weft_material_add_models(weft_material *material, weft_error *error);
-
-/* Whether it has components, and nothing but zeros of lobes and diffuse terms. The errors of level 0 are then those of
+/* Whether it has components and no lobes. The errors of level 0 are then those of
  * the components at the texels that they were learned from; other levels have none. Pure. */
 bool weft_material_has_components_alone(const weft_material *material);
 
@@ -103,7 +95,11 @@ const char *weft_material_errors_of(const weft_material *material);
 /* Whether any texel has an opacity below 1 in any view. Pure. */
 bool weft_material_has_holes(const weft_material *material);
 
-/* Writes atomically. Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
+/* Whether it can be written: not where it has a light table, of a file of version 1. Errors: WEFT_BAD_USAGE. */
+weft_code weft_material_check_writable(const weft_material *material, weft_error *error);
+
+/* Writes version 2 atomically. The values of components are rounded as weft_components_round_values does at its finest.
+ * Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
  * terms or exponents, directions that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
  * WEFT_SYSTEM. */
 weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);

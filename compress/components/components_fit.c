@@ -248,17 +248,6 @@ static weft_code measure(const fitting *work, weft_components_report *report, we
 
 /* ---- The whole ---- */
 
-/* Rounding down leaves some floors 0; where all are, the file says nothing of them. */
-static bool has_floors(const weft_components *components)
-{
-    const weft_components_level *level = &components->level[0];
-    for (size_t i = 0; i < 3 * weft_ceiling_count(level->width, level->height); i++) {
-        if (level->floor[i] > 0)
-            return true;
-    }
-    return false;
-}
-
 static weft_code fit(fitting *work, weft_material *material, weft_components_report *report, weft_error *error)
 {
     WEFT_TRY(learn(work, material, report, error));
@@ -287,8 +276,6 @@ weft_code weft_components_fit(weft_dataset *dataset, const weft_components_optio
     weft_code code = fit(&work, material, report, error);
     if (code == WEFT_OK) {
         material->components = work.components;
-        material->has_components = true;
-        material->has_floors = has_floors(work.components);
         work.components = NULL;
     }
     free_all(&work);

@@ -99,13 +99,12 @@ void weft_material_move_by_steps(weft_material *material)
     weft_material_level *level = &material->level[0];
     size_t texels = (size_t)level->width * (size_t)level->height;
     uint64_t state = 1;
-    move_frames(level->frame, 3 * texels, &state);
-    move_halves(level->diffuse, 4 * texels, &state);
-    move_halves(level->lobe, 12 * (size_t)material->lobe_count * texels, &state);
+    if (material->has_lobes) {
+        move_frames(level->frame, 3 * texels, &state);
+        move_halves(level->diffuse, 4 * (1 + 3 * (size_t)material->lobe_count) * texels, &state);
+    }
     if (level->table)
         move_bytes(level->table, 4 * (size_t)material->view_count * texels, &state);
-    if (level->light_table)
-        move_bytes(level->light_table, 4 * (size_t)material->light_count * texels, &state);
     if (material->components)
         move_components(material->components, texels, &state);
 }

@@ -315,13 +315,15 @@ static float mean_of(const float *value, size_t count)
     return (float)(sum / (double)count);
 }
 
-/* A lobe is as many times as bright where its C are by the root of its exponent. */
+/* A lobe is as many times as bright where its C are by the root of its exponent. The ceiling goes with green. */
 static void scale_texel(const weft_material *tile, const weft_material_level *level, size_t channel, size_t texel,
                         float gain)
 {
     size_t texels = (size_t)level->width * (size_t)level->height;
     weft_half *rho = level->diffuse + 4 * texel + channel;
     *rho = weft_half_of_float(gain * weft_float_of_half(*rho));
+    if (channel == 1)
+        rho[2] = weft_half_of_float(gain * weft_float_of_half(rho[2]));
     for (size_t i = 0; i < (size_t)tile->lobe_count; i++) {
         weft_half *lobe = level->lobe + 4 * ((3 * i + channel) * texels + texel);
         float exponent = weft_float_of_half(lobe[3]), factor = exponent > 0 ? powf(gain, 1 / exponent) : 1;
@@ -385,9 +387,9 @@ weft_code weft_blend_spread(const weft_material *from, const weft_texel_mix *mix
     weft_code code = open_plane(from, mix, tile, &p, error);
     if (code == WEFT_OK && from->components)
         code = spread_components(from->components, &p, tile->components, error);
-    if (code == WEFT_OK)
+    if (code == WEFT_OK && from->has_lobes)
         code = spread_normals(from, &p, tile, error);
-    if (code == WEFT_OK)
+    if (code == WEFT_OK && from->has_lobes)
         code = spread_brightness(from, &p, tile, error);
     close_plane(&p);
     return code;

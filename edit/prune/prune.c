@@ -86,17 +86,13 @@ static weft_code prune_by_bounds(const weft_prune_scene *scene, weft_prune_error
                                  weft_material *material, weft_prune_report *report, weft_error *error)
 {
     report->views.of = material->view_count;
-    report->lights.of = material->light_count;
     note_visibility(visibility, report);
     WEFT_TRY(weft_prune_texels(visibility, material, &report->finer_levels, &report->coarser_levels, error));
     WEFT_TRY(weft_prune_tables(visibility, material, error));
-    if (material->components && allowed.rmse > 0)
-        weft_prune_round_diffuse(material);
     if (!scene->scene.environment)
         weft_prune_lobes(visibility, allowed.rmse / 255 / steepest_srgb / brightness(scene), material,
                          &report->lobes_gone);
     report->views.kept = material->view_count;
-    report->lights.kept = material->light_count;
     return weft_prune_note_seen(visibility, report->finer_levels, report->coarser_levels, material, error);
 }
 
@@ -205,7 +201,7 @@ weft_code weft_prune(weft_player *player, const weft_prune_scene *scene, weft_pr
     weft_visibility visibility;
     weft_prune_pictures pictures[3] = {0};
     *report = (weft_prune_report){.allowed = allowed};
-    if (material->seen)
+    if (material->visibility)
         return weft_fail(
             error, WEFT_BAD_INPUT,
             "the material was pruned for a scene before: prune the whole one, which has more to choose from");
@@ -233,10 +229,10 @@ static json_t *pack_error(weft_prune_error error)
 json_t *weft_prune_to_json(const weft_prune_report *r)
 {
     return json_pack(
-        "{s:[f, f], s:[i, i], s:o, s:o, s:o, s:I, s:o, s:o, s:f, s:[I, I], s:o, s:o, s:o, s:i}", "levels_of_pixels",
+        "{s:[f, f], s:[i, i], s:o, s:o, s:I, s:o, s:o, s:f, s:[I, I], s:o, s:o, s:o, s:i}", "levels_of_pixels",
         r->level_low, r->level_high, "levels_gone", r->finer_levels, r->coarser_levels, "texels", pack_count(r->texels),
-        "views", pack_count(r->views), "lights", pack_count(r->lights), "lobes_gone", (json_int_t)r->lobes_gone,
-        "components", pack_count(r->components), "images", pack_count(r->images), "value_step", r->value_step, "bytes",
-        (json_int_t)r->bytes_after, (json_int_t)r->bytes_before, "allowed", pack_error(r->allowed), "predicted",
-        pack_error(r->predicted), "measured", pack_error(r->measured), "moments_measured", r->measured_count);
+        "views", pack_count(r->views), "lobes_gone", (json_int_t)r->lobes_gone, "components", pack_count(r->components),
+        "images", pack_count(r->images), "value_step", r->value_step, "bytes", (json_int_t)r->bytes_after,
+        (json_int_t)r->bytes_before, "allowed", pack_error(r->allowed), "predicted", pack_error(r->predicted),
+        "measured", pack_error(r->measured), "moments_measured", r->measured_count);
 }

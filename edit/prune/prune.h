@@ -27,7 +27,7 @@ typedef struct weft_prune_report {
     int finer_levels, coarser_levels; /* that are gone */
     long span_count;
     weft_prune_count texels;                       /* of all levels */
-    weft_prune_count views, lights;                /* of T and S; of 0 without */
+    weft_prune_count views;                        /* of the view table; of 0 without */
     weft_prune_count view_cells, light_cells;      /* of the hemisphere, by places in the square */
     long lobes_gone;                               /* of texels */
     weft_prune_count components, images;           /* of components; of 0 without */

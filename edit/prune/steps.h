@@ -18,20 +18,16 @@
 weft_code weft_prune_texels(weft_visibility *visibility, weft_material *material, int *finer, int *coarser,
                             weft_error *error);
 
-/* Rounds the diffuse terms to 5 bits of mantissa, a 64th of themselves. Of a material with components they are read by
- * players alone that do not know components. */
-void weft_prune_round_diffuse(weft_material *material);
-
-/* The maps of what is seen (btf/material/seen.h) of the material as it is now. Errors: WEFT_SYSTEM. */
+/* The maps of visibility (btf/material/visibility.h) of the material as it is now. Errors: WEFT_SYSTEM. */
 weft_code weft_prune_note_seen(const weft_visibility *visibility, int finer, int coarser, weft_material *material,
                                weft_error *error);
 
 /* ---- Table directions ---- */
 
-/* Which entries of the tables T and S the directions of a visibility interpolate between, and a material without the
+/* Which entries of the view table the directions of a visibility interpolate between, and a material without the
  * others. Private to edit/prune. */
 
-/* Leaves out the views and lights of the tables that no direction of the visibility takes a weight of. What is left is
+/* Leaves out the views of the table that no direction of the visibility takes a weight of. What is left is
  * interpolated as before in all cells that are reached, or nothing is left out: directions that lie on one circle could
  * be triangulated another way without their neighbours. Errors: WEFT_SYSTEM. */
 weft_code weft_prune_tables(const weft_visibility *visibility, weft_material *material, weft_error *error);

@@ -134,63 +134,43 @@ static void pack_planes(uint8_t *table, const int *number, int count, size_t pla
         memmove(table + (size_t)i * plane, table + (size_t)number[i] * plane, plane);
 }
 
-static weft_code pack_basis(weft_table_basis **basis, const int *number, int count, weft_error *error)
-{
-    weft_table_basis *from = *basis, *to;
-    if (!from)
-        return WEFT_OK;
-    WEFT_TRY(weft_table_basis_create(from->component_count, count, from->texel_count, &to, error));
-    for (int i = 0; i < count; i++) {
-        to->mean[i] = from->mean[number[i]];
-        for (int k = 0; k < from->component_count; k++)
-            to->component[k * count + i] = from->component[k * from->direction_count + number[i]];
-    }
-    memcpy(to->coefficient, from->coefficient, 3 * (size_t)from->component_count * from->texel_count);
-    weft_table_basis_free(from);
-    *basis = to;
-    return WEFT_OK;
-}
-
 /* number: of the entries that stay, ascending. */
-static weft_code leave_out(weft_material *material, bool of_lights, const int *number, int count, weft_error *error)
+static void leave_out(weft_material *material, const int *number, int count)
 {
-    weft_vec3 *direction = of_lights ? material->light : material->view;
     for (int k = 0; k < material->level_count; k++) {
         weft_material_level *level = &material->level[k];
-        size_t plane = 4 * (size_t)level->width * (size_t)level->height;
-        WEFT_TRY(pack_basis(of_lights ? &level->light_table_basis : &level->table_basis, number, count, error));
-        pack_planes(of_lights ? level->light_table : level->table, number, count, plane);
+        pack_planes(level->table, number, count, 4 * (size_t)level->width * (size_t)level->height);
     }
     for (int i = 0; i < count; i++)
-        direction[i] = direction[number[i]];
-    *(of_lights ? &material->light_count : &material->view_count) = count;
-    return WEFT_OK;
+        material->view[i] = material->view[number[i]];
+    material->view_count = count;
 }
 
 /* kept, number and weight are of `count` entries, zeroed. */
-static weft_code prune(weft_material *material, bool of_lights, const uint8_t *cells, bool *kept, int *number,
-                       double *weight, weft_vec3 *few_directions, const weft_triangulation *all, weft_error *error)
+static weft_code prune(weft_material *material, const uint8_t *cells, bool *kept, int *number, double *weight,
+                       weft_vec3 *few_directions, const weft_triangulation *all, weft_error *error)
 {
-    const weft_vec3 *direction = of_lights ? material->light : material->view;
-    int count = of_lights ? material->light_count : material->view_count, kept_count = 0;
-    int wanted = keep(all, direction, count, cells, kept);
+    int count = material->view_count, kept_count = 0;
+    int wanted = keep(all, material->view, count, cells, kept);
     if (wanted < 3 || wanted == count || weft_triangulation_triangle_count(all) == 0)
         return WEFT_OK;
     for (int i = 0; i < count; i++)
         if (kept[i]) {
-            few_directions[kept_count] = direction[i];
+            few_directions[kept_count] = material->view[i];
             number[kept_count++] = i;
         }
     weft_triangulation *few;
     WEFT_TRY(weft_triangulation_build(few_directions, kept_count, &few, error));
     bool same = is_still_the_same(all, few, number, count, cells, weight);
     weft_triangulation_free(few);
-    return same ? leave_out(material, of_lights, number, kept_count, error) : WEFT_OK;
+    if (same)
+        leave_out(material, number, kept_count);
+    return WEFT_OK;
 }
 
-static weft_code prune_table(weft_material *material, bool of_lights, const uint8_t *cells, weft_error *error)
+weft_code weft_prune_tables(const weft_visibility *visibility, weft_material *material, weft_error *error)
 {
-    size_t count = (size_t)(of_lights ? material->light_count : material->view_count);
+    size_t count = (size_t)material->view_count;
     weft_triangulation *all = NULL;
     if (count == 0)
         return WEFT_OK;
@@ -201,19 +181,13 @@ static weft_code prune_table(weft_material *material, bool of_lights, const uint
     weft_code code =
         kept && number && weight && few ? WEFT_OK : weft_fail_memory(error, "directions", count * sizeof *few);
     if (code == WEFT_OK)
-        code = weft_triangulation_build(of_lights ? material->light : material->view, (int)count, &all, error);
+        code = weft_triangulation_build(material->view, (int)count, &all, error);
     if (code == WEFT_OK)
-        code = prune(material, of_lights, cells, kept, number, weight, few, all, error);
+        code = prune(material, visibility->view, kept, number, weight, few, all, error);
     weft_triangulation_free(all);
     free(kept);
     free(number);
     free(weight);
     free(few);
     return code;
-}
-
-weft_code weft_prune_tables(const weft_visibility *visibility, weft_material *material, weft_error *error)
-{
-    WEFT_TRY(prune_table(material, false, visibility->view, error));
-    return prune_table(material, true, visibility->light, error);
 }

@@ -92,12 +92,6 @@ static void fill_planes(void *planes, int plane_count, size_t texel_bytes, const
         fill_plane((uint8_t *)planes + (size_t)i * texel_bytes * count, texel_bytes, source, count);
 }
 
-static void fill_basis(const weft_table_basis *basis, const size_t *source, size_t count)
-{
-    if (basis)
-        fill_planes(basis->coefficient, 3 * basis->component_count, 1, source, count);
-}
-
 static void fill_level(const weft_material *material, int k, const size_t *source)
 {
     const weft_material_level *level = &material->level[k];
@@ -106,10 +100,6 @@ static void fill_level(const weft_material *material, int k, const size_t *sourc
     fill_plane(level->diffuse, 4 * sizeof *level->diffuse, source, count);
     fill_planes(level->lobe, 3 * material->lobe_count, 4 * sizeof *level->lobe, source, count);
     fill_planes(level->table, material->view_count, 4, source, count);
-    fill_planes(level->light_table, material->light_count, 4, source, count);
-    fill_basis(level->table_basis, source, count);
-    fill_basis(level->light_table_basis, source, count);
-    fill_plane(level->model, 1, source, count);
     if (material->components)
         fill_planes(material->components->level[k].coefficient,
                     material->components->component_count / WEFT_COMPONENTS_GROUP, WEFT_COMPONENTS_GROUP, source,
@@ -154,29 +144,7 @@ weft_code weft_prune_texels(weft_visibility *visibility, weft_material *material
     return WEFT_OK;
 }
 
-/* ---- The diffuse terms ---- */
-
-enum { HALF_MANTISSA = 10, KEPT_MANTISSA = 5, LARGEST_FINITE = 0x7bff };
-
-/* The carry of a mantissa goes into the exponent, as it should. */
-static weft_half rounded(weft_half value)
-{
-    const int cut = HALF_MANTISSA - KEPT_MANTISSA;
-    int sum = value + (1 << (cut - 1));
-    return (weft_half)((sum > LARGEST_FINITE ? value : sum) >> cut << cut);
-}
-
-void weft_prune_round_diffuse(weft_material *material)
-{
-    for (int k = 0; k < material->level_count; k++) {
-        weft_material_level *level = &material->level[k];
-        size_t count = 4 * (size_t)level->width * (size_t)level->height;
-        for (size_t i = 0; i < count; i++)
-            level->diffuse[i] = rounded(level->diffuse[i]);
-    }
-}
-
-/* ---- What is seen ---- */
+/* ---- Visibility ---- */
 
 /* All texels that interpolation reads within a cell are kept. */
 static bool is_kept(const weft_visibility *visibility, int k, int column, int row)
@@ -194,17 +162,19 @@ static bool is_kept(const weft_visibility *visibility, int k, int column, int ro
 weft_code weft_prune_note_seen(const weft_visibility *visibility, int finer, int coarser, weft_material *material,
                                weft_error *error)
 {
-    weft_seen *seen;
-    WEFT_TRY(weft_seen_create(WEFT_VISIBILITY_SIDE, visibility->level_count, &seen, error));
+    weft_material_visibility *seen;
+    WEFT_TRY(weft_material_visibility_create(WEFT_VISIBILITY_SIDE, visibility->level_count, &seen, error));
     seen->finer_levels = finer;
     seen->coarser_levels = coarser;
-    memcpy(weft_seen_cells(seen, WEFT_SEEN_VIEWS), visibility->view, sizeof visibility->view);
-    memcpy(weft_seen_cells(seen, WEFT_SEEN_LIGHTS), visibility->light, sizeof visibility->light);
+    memcpy(weft_material_visibility_cells(seen, WEFT_MATERIAL_VISIBILITY_VIEWS), visibility->view,
+           sizeof visibility->view);
+    memcpy(weft_material_visibility_cells(seen, WEFT_MATERIAL_VISIBILITY_LIGHTS), visibility->light,
+           sizeof visibility->light);
     for (int k = 0; k < visibility->level_count; k++) {
-        uint8_t *cell = weft_seen_cells(seen, WEFT_SEEN_PLACES + k);
+        uint8_t *cell = weft_material_visibility_cells(seen, WEFT_MATERIAL_VISIBILITY_PLACES + k);
         for (int i = 0; i < WEFT_VISIBILITY_SIDE * WEFT_VISIBILITY_SIDE; i++)
             cell[i] = is_kept(visibility, k, i % WEFT_VISIBILITY_SIDE, i / WEFT_VISIBILITY_SIDE);
     }
-    weft_material_take_seen(material, seen);
+    weft_material_take_visibility(material, seen);
     return WEFT_OK;
 }

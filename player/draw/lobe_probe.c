@@ -135,7 +135,8 @@ static weft_code read_all(const weft_player *p, int x, int y, weft_vec3 light, w
     glGenFramebuffers(1, &buffer);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, buffer);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    read_texel(t, x, y, texel);
+    if (texel->has_lobes)
+        read_texel(t, x, y, texel);
     if (p->directions.views)
         read_table(&t->table, &t->layout, p->directions.views, view, x, y, texel->view_table);
     if (p->directions.lights)
@@ -156,6 +157,7 @@ weft_code weft_texel_read(const weft_player *p, int level, int x, int y, weft_ve
     const weft_mip_area *area = &layout->area[level];
     *texel = (weft_texel){.width = area->width,
                           .height = area->height,
+                          .has_lobes = p->material.texel != 0,
                           .has_view_table = p->directions.views != NULL,
                           .has_light_table = p->directions.lights != NULL,
                           .view_table = {1, 1, 1},

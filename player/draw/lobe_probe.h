@@ -18,6 +18,7 @@ typedef struct weft_texel {
     int width, height; /* of its level */
     weft_frame frame;  /* in the axes of the surface */
     double diffuse[3];
+    bool has_lobes; /* a diffuse term, and so many lobes; else the rest is 0 */
     int lobe_count;
     weft_lobe lobe[WEFT_MATERIAL_MAX_LOBES][3];
     weft_lobe_shape shape[WEFT_MATERIAL_MAX_LOBES];

@@ -318,9 +318,18 @@ int weft_player_layer_count(const weft_player *p)
     return WEFT_COMPONENTS_GROUP * p->material.components.group_count;
 }
 
+int weft_player_drawn_components(const weft_player *p, const weft_scene *scene)
+{
+    int all = weft_player_layer_count(p), wanted = scene->components;
+    if (wanted <= 0)
+        return p->material.texel ? 0 : all;
+    wanted = (wanted + WEFT_COMPONENTS_GROUP - 1) / WEFT_COMPONENTS_GROUP * WEFT_COMPONENTS_GROUP;
+    return wanted < all ? wanted : all;
+}
+
 void weft_player_material_parts(const weft_player *p, int *lobe_count, bool *view_table, bool *light_table)
 {
-    *lobe_count = p->material.lobe_count;
+    *lobe_count = p->material.texel ? p->material.lobe_count : -1;
     *view_table = p->material.table.count > 0;
     *light_table = p->material.light_table.count > 0;
 }

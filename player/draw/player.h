@@ -62,7 +62,10 @@ size_t weft_player_bytes(const weft_player *player, weft_mode mode);
 const char *weft_player_raw_format(const weft_player *player);
 /* Number of components of the material; 0 without. */
 int weft_player_layer_count(const weft_player *player);
-/* What the material has: lobes, and whether T and S. */
+/* How many of them draw it in this scene, which may ask for the first alone, or for lobes in their place: 0. All of
+ * them where it has no lobes. */
+int weft_player_drawn_components(const weft_player *player, const weft_scene *scene);
+/* What the material has: how many lobes, -1 without a diffuse term either; and whether T and S. */
 void weft_player_material_parts(const weft_player *player, int *lobe_count, bool *view_table, bool *light_table);
 /* Largest measured angle of the views and lights of a mode, from the normal. */
 void weft_player_last_ring(const weft_player *player, weft_mode mode, double *view_rad, double *light_rad);

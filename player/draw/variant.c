@@ -8,14 +8,7 @@ enum { HURRIED_LIGHTS = 2 };
 /* They take other texture units than lobes do. */
 static bool uses_components(const weft_player *p, const weft_scene *scene)
 {
-    return scene->components > 0 && p->material.components.group_count > 0;
-}
-
-static int drawn_groups(const weft_player *p, const weft_scene *scene)
-{
-    int wanted = (scene->components + WEFT_COMPONENTS_GROUP - 1) / WEFT_COMPONENTS_GROUP,
-        most = p->material.components.group_count;
-    return wanted < most ? wanted : most;
+    return weft_player_drawn_components(p, scene) > 0;
 }
 
 void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
@@ -26,8 +19,8 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         break;
     case WEFT_MODE_COMPRESSED:
         weft_material_texture_bind(&p->material, program, uses_components(p, scene));
-        if (scene->show_extrapolation && p->material.seen.maps)
-            weft_seen_texture_bind(&p->material.seen, program, uses_components(p, scene) ? 0 : 5);
+        if (scene->show_extrapolation && p->material.visibility.maps)
+            weft_visibility_texture_bind(&p->material.visibility, program, uses_components(p, scene) ? 0 : 5);
         if (uses_components(p, scene))
             break;
         glUniform1fv(weft_gl_uniform(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
@@ -76,9 +69,9 @@ weft_variant weft_player_variant(const weft_player *p, const weft_scene *scene, 
         variant.view_table = p->material.table.count > 0;
         variant.light_table = p->material.light_table.count > 0;
         variant.fewer_bits = scene->table_bits < 8;
-        variant.pruned = scene->show_extrapolation && p->material.seen.maps;
+        variant.pruned = scene->show_extrapolation && p->material.visibility.maps;
         variant.component_groups = uses_components(p, scene) ? p->material.components.group_count : 0;
-        variant.drawn_groups = drawn_groups(p, scene);
+        variant.drawn_groups = weft_player_drawn_components(p, scene) / WEFT_COMPONENTS_GROUP;
         variant.incidence_power = p->material.components.incidence_power;
         variant.opacity = variant.component_groups > 0 && !p->material.opaque;
         variant.relief = variant.component_groups > 0 && scene->relief && p->material.relief.height;

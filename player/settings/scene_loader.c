@@ -185,6 +185,13 @@ weft_code weft_scene_loader_finish(weft_scene_loader *l, const weft_progress *pr
     return WEFT_OK;
 }
 
+static weft_code require_lobes(const weft_settings *settings, const weft_player *player, weft_error *error)
+{
+    if (settings->scene.components > 0 || weft_player_drawn_components(player, &settings->scene) == 0)
+        return WEFT_OK;
+    return weft_fail(error, WEFT_BAD_USAGE, "'%s' has no lobes: --components 0 cannot draw it", settings->material);
+}
+
 weft_code weft_scene_load(weft_settings *settings, weft_player *player, const weft_progress *progress,
                           const weft_log *log, weft_error *error)
 {
@@ -193,6 +200,8 @@ weft_code weft_scene_load(weft_settings *settings, weft_player *player, const we
     weft_code code = weft_scene_loader_attach(loader, player, error);
     if (code == WEFT_OK)
         code = weft_scene_loader_finish(loader, progress, log, error);
+    if (code == WEFT_OK)
+        code = require_lobes(settings, player, error);
     weft_scene_loader_free(loader);
     return code;
 }

@@ -26,7 +26,8 @@ weft_code weft_scene_loader_poll(weft_scene_loader *loader, bool *shown, char no
 weft_code weft_scene_loader_finish(weft_scene_loader *loader, const weft_progress *progress, const weft_log *log,
                                    weft_error *error);
 
-/* All of these at once, for who only wants the picture. Errors: as above. */
+/* All of these at once, for who only wants the picture. Errors: as above; WEFT_BAD_USAGE for a scene of 0 components
+ * where the material has no lobes. */
 weft_code weft_scene_load(weft_settings *settings, weft_player *player, const weft_progress *progress,
                           const weft_log *log, weft_error *error);
 

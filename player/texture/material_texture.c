@@ -71,16 +71,16 @@ static void pack_layer(const weft_material_level *level, int lobes, int layer, u
 static weft_code upload_texels(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
     const weft_mip_layout *layout = &t->layout;
-    int lobes = 3 * material->lobe_count, components = 1 + (lobes + 1) / 2;
+    int lobes = 3 * material->lobe_count, layers = 1 + (lobes + 1) / 2;
     size_t most = (size_t)layout->area[0].width * (size_t)layout->area[0].height;
     uint32_t(*word)[4] = calloc(most, sizeof *word);
     if (!word)
         return weft_fail_memory(error, "texels", most * sizeof *word);
-    weft_code code = weft_gl_texture(packed_format, layout->width, layout->height, components, NULL, &t->texel, error);
-    for (int i = 0; code == WEFT_OK && i < layout->level_count * components; i++) {
-        weft_mip_area a = layout->area[i / components];
-        pack_layer(&material->level[i / components], lobes, i % components, word);
-        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, i % components, a.width, a.height, 1, packed_format.layout,
+    weft_code code = weft_gl_texture(packed_format, layout->width, layout->height, layers, NULL, &t->texel, error);
+    for (int i = 0; code == WEFT_OK && i < layout->level_count * layers; i++) {
+        weft_mip_area a = layout->area[i / layers];
+        pack_layer(&material->level[i / layers], lobes, i % layers, word);
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, i % layers, a.width, a.height, 1, packed_format.layout,
                         packed_format.type, word);
     }
     free(word);
@@ -180,10 +180,11 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
         .lobe_count = material->lobe_count,
         .opaque = !weft_material_has_holes(material),
     };
-    WEFT_TRY(upload_texels(material, t, error));
+    if (material->has_lobes)
+        WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
     WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
-    WEFT_TRY(weft_seen_texture_upload(material->seen, &t->seen, error));
+    WEFT_TRY(weft_visibility_texture_upload(material->visibility, &t->visibility, error));
     weft_material_relief relief;
     int *entry = NULL;
     WEFT_TRY(weft_material_relief_create(material, &relief, error));
@@ -207,17 +208,17 @@ void weft_material_texture_free(weft_material_texture *t)
     weft_direction_texture_free(&t->directions);
     weft_component_texture_free(&t->components);
     weft_relief_texture_free(&t->relief);
-    weft_seen_texture_free(&t->seen);
+    weft_visibility_texture_free(&t->visibility);
     *t = (weft_material_texture){0};
 }
 
 size_t weft_material_texture_bytes(const weft_material_texture *t)
 {
     size_t texels = (size_t)t->layout.width * (size_t)t->layout.height;
-    size_t components = 1 + (3 * (size_t)t->lobe_count + 1) / 2;
+    size_t layers = t->texel ? 1 + (3 * (size_t)t->lobe_count + 1) / 2 : 0;
     size_t shared, of_components = weft_component_texture_bytes(&t->components, &shared);
     return of_components + t->relief.bytes +
-           texels * (16 * components + 4 * (size_t)(t->table.count + t->light_table.count));
+           texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
 }
 
 void weft_material_texture_bind(const weft_material_texture *t, GLuint program, bool factorised)

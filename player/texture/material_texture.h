@@ -7,7 +7,7 @@
 #include "player/texture/direction_texture.h"
 #include "player/texture/mip_layout.h"
 #include "player/texture/relief_texture.h"
-#include "player/texture/seen_texture.h"
+#include "player/texture/visibility_texture.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,13 +24,13 @@ typedef struct weft_table_texture {
  * signed 16-bit fractions (x, y; z, w), and the diffuse term and the ceiling in half floats (r, g; b, ceiling). Layer 1
  * + i: lobes 2i and 2i + 1, counted 3 lobe + channel, as half floats (Cx, Cy; Cz, N). */
 typedef struct weft_material_texture {
-    GLuint texel;
+    GLuint texel; /* 0 without lobes */
     weft_table_texture table, light_table;
     weft_direction_texture directions; /* set 0: views, set 1: lights, set 2: stored views that it is looked at from */
     weft_mip_layout layout;
     weft_component_texture components;
-    weft_relief_texture relief; /* of the components */
-    weft_seen_texture seen;     /* what it holds, where it was pruned */
+    weft_relief_texture relief;         /* of the components */
+    weft_visibility_texture visibility; /* what it holds, where it was pruned */
     int lobe_count;
     bool opaque;
 } weft_material_texture;

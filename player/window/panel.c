@@ -206,11 +206,13 @@ static void light_section(weft_application *a)
 static void component_rows(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
-    int count = weft_player_layer_count(a->player), groups = i->scene.components / WEFT_COMPONENTS_GROUP;
+    int count = weft_player_layer_count(a->player), lobes, groups;
+    bool view_table, light_table;
     if (count == 0)
         return;
-    groups = groups < count / WEFT_COMPONENTS_GROUP ? groups : count / WEFT_COMPONENTS_GROUP;
-    if (weft_ui_whole("Components / 4", &groups, 0, count / WEFT_COMPONENTS_GROUP)) {
+    weft_player_material_parts(a->player, &lobes, &view_table, &light_table);
+    groups = weft_player_drawn_components(a->player, &i->scene) / WEFT_COMPONENTS_GROUP;
+    if (weft_ui_whole("Components / 4", &groups, lobes < 0, count / WEFT_COMPONENTS_GROUP)) {
         i->scene.components = WEFT_COMPONENTS_GROUP * groups;
         i->changed = true;
     }

@@ -81,13 +81,6 @@ static void mark_lobes(const plot_disc *disc, const weft_texel *texel)
     }
 }
 
-/* How many components draw the material; 0 where its lobes do. */
-static int components_drawn(const weft_application *a)
-{
-    int count = weft_player_layer_count(a->player), wanted = a->interaction.scene.components;
-    return (wanted < count ? wanted : count) / WEFT_COMPONENTS_GROUP * WEFT_COMPONENTS_GROUP;
-}
-
 /* Reflectance over lights and over views, with the ring of what is. */
 static void discs(const weft_application *a)
 {
@@ -97,7 +90,8 @@ static void discs(const weft_application *a)
     for (int i = 0; i < 2; i++) {
         const plot_disc disc = {area.x + i * size, area.y, size / 2, a->scale};
         weft_ui_ring(disc.x + disc.radius, disc.y + disc.radius, disc.radius, a->scale, faint);
-        if (i == 0 && a->probe.mode == WEFT_MODE_COMPRESSED && components_drawn(a) == 0)
+        if (i == 0 && a->probe.mode == WEFT_MODE_COMPRESSED &&
+            weft_player_drawn_components(a->player, &a->interaction.scene) == 0)
             mark_lobes(&disc, &a->texel);
         mark_direction(&disc, i == 0 ? a->probe.light : a->probe.view);
     }
@@ -174,11 +168,14 @@ void weft_panel_show_probe(const weft_application *a)
     discs(a);
     if (a->probe.mode != WEFT_MODE_COMPRESSED)
         return;
-    if (components_drawn(a) > 0) {
+    int components = weft_player_drawn_components(a->player, &a->interaction.scene);
+    if (components > 0) {
         char text[64];
-        snprintf(text, sizeof text, "Drawn by %d components. Beside them:", components_drawn(a));
+        snprintf(text, sizeof text, "Drawn by %d components.%s", components, a->texel.has_lobes ? " Beside them:" : "");
         weft_ui_dim_text(text);
     }
+    if (!a->texel.has_lobes)
+        return;
     model_rows(&a->texel);
     if (a->texel.lobe_count > 0 && weft_ui_section("Its parameters", false))
         parameter_rows(&a->texel);

@@ -45,8 +45,8 @@ weft_code weft_table_directions_create(const weft_material *material, weft_table
 void weft_table_directions_free(weft_table_directions *directions);
 
 /* BRDF x pi (r, g, b) and opacity of texel (x, y) of a level, for light and view in the frame of the surface; 0 where
- * the view is below the horizon, black with its opacity where only the light is. `directions` are those of the
- * material. The reference of the player's shader. */
+ * the view is below the horizon, black with its opacity where only the light is, and where the material has no lobes.
+ * `directions` are those of the material. The reference of the player's shader. */
 weft_rgba weft_material_texel(const weft_material *material, const weft_table_directions *directions, int level, int x,
                               int y, weft_vec3 light, weft_vec3 view);
 

@@ -64,10 +64,12 @@ typedef struct table_corners {
 static weft_rgba texel_value(const weft_material *material, const weft_material_level *level,
                              const table_corners *corners, size_t texel, weft_vec3 light, weft_vec3 view)
 {
-    weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
-    weft_vec3 l = weft_frame_local(&frame, light), v = weft_frame_local(&frame, view);
     weft_rgba lit = table_at(level->light_table, level, texel, &corners->light);
     weft_rgba value = table_at(level->table, level, texel, &corners->view);
+    if (!material->has_lobes)
+        return (weft_rgba){0, 0, 0, value.a};
+    weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
+    weft_vec3 l = weft_frame_local(&frame, light), v = weft_frame_local(&frame, view);
     value.r *= lit.r * channel_value(material, level, texel, 0, l, v);
     value.g *= lit.g * channel_value(material, level, texel, 1, l, v);
     value.b *= lit.b * channel_value(material, level, texel, 2, l, v);

@@ -87,8 +87,8 @@ value=$(bright wide.png)
 # What is asked of lobes where components draw is said to be idle, and whose errors the levels have.
 expect_ok render dark.weft --lobes-on none --size 60x40 --samples 1 -o idle.png
 grep -q "drawn by its components: --lobes-on" out.log || fail "nobody says that --lobes-on changes nothing beside components"
-expect_ok render dark.weft --components 0 --lobes-on none --size 60x40 --samples 1 -o lobes.png
-grep -q "drawn by its components" out.log && fail "lobes that are drawn are said to be idle"
+expect_error 2 "'dark.weft' has no lobes: --components 0 cannot draw it" render dark.weft --components 0 --size 60x40 --samples 1 -o lobes.png
+expect_no_file lobes.png
 expect_ok info dark.weft
 grep -q "fitted_level_0:" out.log || fail "info does not say the error of components: $(cat out.log)"
 grep -q "errors_of: components" out.log || fail "info does not say whose errors the levels of a material of components have"

@@ -37,6 +37,12 @@ grep -q "nothing moves" out.log || fail "a still scene has other moments: $(cat 
 ! grep -q "more than was allowed" out.log || fail "rounding counts as an error: $(cat out.log)"
 expect_ok prune knit.weft "$@" --error 0 -o told.weft --json
 grep -q '"event":"pruned"' out.log || fail "there is no event"
+# The sizes are those of the files; that of the new one does not count what it says of the pruning.
+before=$(sed -n 's/.*"bytes":\[[0-9]*,\([0-9]*\)\].*/\1/p' out.log)
+after=$(sed -n 's/.*"bytes":\[\([0-9]*\),.*/\1/p' out.log)
+added=$(($(wc -c <told.weft) - after))
+[ "$before" -eq "$(wc -c <knit.weft)" ] || fail "knit.weft is said to have $before bytes"
+[ "$added" -gt 0 ] && [ "$added" -lt 1024 ] || fail "told.weft has $added bytes more than was said"
 
 # A picture is a scene.
 expect_ok render knit.weft "$@" -o shot.png

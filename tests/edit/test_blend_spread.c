@@ -123,7 +123,6 @@ static weft_material factorised(double (*pattern)(int x, int y))
     expect_ok(weft_material_create(WIDTH, HEIGHT, 0, 0, 0, true, &material, &error), &error);
     expect_ok(weft_components_create(&shape, WIDTH, HEIGHT, material.level_count, &material.components, &error),
               &error);
-    material.has_components = true;
     set_lights(material.components);
     weft_components_level *level = &material.components->level[0];
     for (int i = 0; i < TEXELS; i++) {

@@ -35,15 +35,14 @@ static weft_half half(double value)
     return weft_half_of_float((float)value);
 }
 
-/* One lobe everywhere, tables of 81 views and lights that tell directions and texels apart. */
+/* One lobe everywhere, a table of 81 views that tells directions and texels apart. */
 static weft_material make_material(void)
 {
     weft_error error = {0};
     weft_material material;
-    expect_ok(weft_material_create(TEXELS_X, TEXELS_Y, 1, WEFT_UBO81_COUNT, WEFT_UBO81_COUNT, 1, &material, &error),
-              &error);
+    expect_ok(weft_material_create(TEXELS_X, TEXELS_Y, 1, WEFT_UBO81_COUNT, 0, 1, &material, &error), &error);
     for (int i = 0; i < WEFT_UBO81_COUNT; i++)
-        material.view[i] = material.light[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+        material.view[i] = weft_direction_of_angles(weft_ubo81_angles(i));
     for (int k = 0; k < material.level_count; k++) {
         weft_material_level *level = &material.level[k];
         size_t texels = (size_t)level->width * (size_t)level->height;
@@ -56,10 +55,8 @@ static weft_material make_material(void)
                 lobe[3] = half(20);
             }
         }
-        for (size_t i = 0; i < 4 * WEFT_UBO81_COUNT * texels; i++) {
+        for (size_t i = 0; i < 4 * WEFT_UBO81_COUNT * texels; i++)
             level->table[i] = i % 4 == 3 ? 255 : (uint8_t)(120 + (i / 4 * 37 + i % 4) % 130);
-            level->light_table[i] = i % 4 == 3 ? 255 : (uint8_t)(130 + (i / 4 * 53 + i % 4) % 120);
-        }
     }
     return material;
 }
@@ -289,7 +286,6 @@ static void pictures_stay_as_they_were(void **state)
     weft_prune_lobes(&s.visibility, 1e-4, &s.material, &lobes);
     assert_true(coarser > 0);
     assert_true(s.material.view_count < 40);
-    assert_true(s.material.light_count < 20);
     expect_ok(weft_player_set_material(player, &s.material, &error), &error);
     for (int i = 0; i < 3; i++) {
         weft_scene scene = s.scene.scene;
@@ -388,23 +384,6 @@ static void rounding_changes_reflectance_by_its_step(void **state)
     weft_components_free(components);
 }
 
-static void diffuse_terms_stay_within_a_64th(void **state)
-{
-    (void)state;
-    weft_material material = make_material();
-    weft_half *diffuse = material.level[0].diffuse;
-    const float value[] = {0, 1, 0.123f, 0.4999f, 65504, 6e-8f, 1.9999f, 0.7f};
-    for (int i = 0; i < 8; i++)
-        diffuse[i] = weft_half_of_float(value[i]);
-    weft_prune_round_diffuse(&material);
-    for (int i = 0; i < 8; i++) {
-        double is = (double)weft_float_of_half(diffuse[i]), was = (double)value[i];
-        assert_int_equal(diffuse[i] & 31, 0);
-        assert_true(fabs(is - was) <= (i == 4 ? was / 32 : fmax(was / 64, 16 * 0x1p-24)) * 1.01);
-    }
-    weft_material_free(&material);
-}
-
 /* The finest levels go, and with them the size of a texel grows; the material stays as wide. */
 static void far_cameras_take_finer_levels_away(void **state)
 {
@@ -419,9 +398,9 @@ static void far_cameras_take_finer_levels_away(void **state)
     assert_int_equal(s.material.level[0].width, TEXELS_X >> finer);
     assert_float_equal(s.material.texel_pitch_mm * s.material.level[0].width, width_mm, 1e-9);
     expect_ok(weft_prune_note_seen(&s.visibility, finer, coarser, &s.material, &error), &error);
-    assert_int_equal(s.material.seen->finer_levels, finer);
-    assert_false(weft_seen_place(s.material.seen, -0.5, 0.3, 0.3));
-    assert_true(weft_seen_place(s.material.seen, 0.5, 0.3, 0.3));
+    assert_int_equal(s.material.visibility->finer_levels, finer);
+    assert_false(weft_material_visibility_place(s.material.visibility, -0.5, 0.3, 0.3));
+    assert_true(weft_material_visibility_place(s.material.visibility, 0.5, 0.3, 0.3));
     close_stage(&s);
 }
 
@@ -455,10 +434,13 @@ static void the_tint_is_what_the_maps_say(void **state)
         if (at[p].covered == 0)
             continue;
         const weft_missing missing = {
-            .view = v.z < cos(last_view) - 1e-3 || !weft_seen_direction(s.material.seen, WEFT_SEEN_VIEWS, v),
-            .light =
-                l.z > 0 && (l.z < cos(last_light) - 1e-3 || !weft_seen_direction(s.material.seen, WEFT_SEEN_LIGHTS, l)),
-            .place = !weft_seen_place(s.material.seen, (double)at[p].level, (double)at[p].u, (double)at[p].v)};
+            .view = v.z < cos(last_view) - 1e-3 ||
+                    !weft_material_visibility_direction(s.material.visibility, WEFT_MATERIAL_VISIBILITY_VIEWS, v),
+            .light = l.z > 0 &&
+                     (l.z < cos(last_light) - 1e-3 ||
+                      !weft_material_visibility_direction(s.material.visibility, WEFT_MATERIAL_VISIBILITY_LIGHTS, l)),
+            .place = !weft_material_visibility_place(s.material.visibility, (double)at[p].level, (double)at[p].u,
+                                                     (double)at[p].v)};
         weft_extrapolation_shown(plain.pixels + 3 * p, missing, shown);
         bool same = true;
         for (int c = 0; c < 3; c++)
@@ -492,7 +474,6 @@ int test_prune(void)
         cmocka_unit_test(texels_that_are_not_seen_become_copies),
         cmocka_unit_test(far_cameras_take_finer_levels_away),
         cmocka_unit_test(rounding_changes_reflectance_by_its_step),
-        cmocka_unit_test(diffuse_terms_stay_within_a_64th),
         cmocka_unit_test(the_tint_is_what_the_maps_say),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

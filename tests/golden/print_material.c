@@ -1,4 +1,3 @@
-#include "btf/material/models.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "tests/golden/print.h"
 
@@ -22,6 +21,13 @@ static void print_lobes(FILE *out, const weft_material *material, const weft_mat
 {
     static const char *const channel[3] = {"red", "green", "blue"};
     size_t texels = (size_t)level->width * (size_t)level->height;
+    weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
+    fprintf(out, "  normal:");
+    print_vector(out, frame.normal);
+    fprintf(out, " tangent:");
+    print_vector(out, frame.tangent);
+    fprintf(out, "\n  rho:");
+    print_half4(out, level->diffuse + 4 * texel);
     for (size_t plane = 0; plane < 3 * (size_t)material->lobe_count; plane++) {
         fprintf(out, "  lobe %zu %s, C and N:", plane / 3, channel[plane % 3]);
         print_half4(out, level->lobe + 4 * (plane * texels + texel));
@@ -45,21 +51,11 @@ static void print_texel(FILE *out, const weft_material *material, int k, size_t 
 {
     const weft_material_level *level = &material->level[k];
     size_t width = (size_t)level->width, texels = width * (size_t)level->height;
-    weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
-    fprintf(out, "level %d texel %zu %zu\n  normal:", k, texel % width, texel / width);
-    print_vector(out, frame.normal);
-    fprintf(out, " tangent:");
-    print_vector(out, frame.tangent);
-    fprintf(out, "\n  rho:");
-    print_half4(out, level->diffuse + 4 * texel);
-    print_lobes(out, material, level, texel);
+    fprintf(out, "level %d texel %zu %zu\n", k, texel % width, texel / width);
+    if (material->has_lobes)
+        print_lobes(out, material, level, texel);
     print_table(out, "T", level->table, material->view_count, texels, texel);
     print_table(out, "S", level->light_table, material->light_count, texels, texel);
-    if (material->has_models) {
-        char name[WEFT_MODEL_NAME];
-        weft_model_print(weft_model_decode(level->model[texel]), name);
-        fprintf(out, "  model: %s\n", name);
-    }
 }
 
 /* BRDF x pi and opacity. */
@@ -97,15 +93,15 @@ static void print_heights(FILE *out, const weft_material_heights *heights)
             fprintf(out, "  (%d, %d): %.9g mm\n", x, y, (double)weft_material_height_mm(heights, x, y));
 }
 
-static void print_seen(FILE *out, const weft_seen *seen)
+static void print_seen(FILE *out, const weft_material_visibility *seen)
 {
     fprintf(out, "seen: %d x %d cells, %d levels, %d finer and %d coarser are gone\n", seen->side, seen->side,
             seen->level_count, seen->finer_levels, seen->coarser_levels);
-    for (int map = 0; map < WEFT_SEEN_PLACES + seen->level_count; map++)
+    for (int map = 0; map < WEFT_MATERIAL_VISIBILITY_PLACES + seen->level_count; map++)
         for (int row = 0; row < seen->side; row++) {
             fprintf(out, "  map %d row %d:", map, row);
             for (int column = 0; column < seen->side; column++)
-                fprintf(out, " %d", weft_seen_cells(seen, map)[row * seen->side + column]);
+                fprintf(out, " %d", weft_material_visibility_cells(seen, map)[row * seen->side + column]);
             fprintf(out, "\n");
         }
 }
@@ -119,8 +115,6 @@ weft_code print_material(const char *path, FILE *out, weft_error *error)
     if (code == WEFT_OK) {
         fprintf(out, "lobes: %d levels: %d texel_pitch_mm: %.9g\n", material.lobe_count, material.level_count,
                 material.texel_pitch_mm);
-        fprintf(out, "models: %d components: %d opacity by itself: %d holes: %d\n", material.has_models,
-                material.has_table_bases, material.has_opacity, weft_material_has_holes(&material));
         fprintf(out, "metadata: %s\n", material.metadata);
         print_directions(out, "view", material.view, material.view_count);
         print_directions(out, "light", material.light, material.light_count);
@@ -128,8 +122,8 @@ weft_code print_material(const char *path, FILE *out, weft_error *error)
             print_level(out, &material, &directions, k);
         if (material.heights)
             print_heights(out, material.heights);
-        if (material.seen)
-            print_seen(out, material.seen);
+        if (material.visibility)
+            print_seen(out, material.visibility);
         weft_table_directions_free(&directions);
     }
     weft_material_free(&material);

@@ -282,7 +282,6 @@ void stage_components(weft_components_kind kind, int component_count, weft_mater
     expect_ok(weft_components_create(&shape, material->level[0].width, material->level[0].height, material->level_count,
                                      &material->components, &error),
               &error);
-    material->has_components = true;
     for (int view = 0; view < COMPONENT_DIRECTIONS; view++) {
         put_direction(view, material->components->view + 3 * view);
         material->components->first[view + 1] = (uint32_t)(COMPONENT_DIRECTIONS * (view + 1));

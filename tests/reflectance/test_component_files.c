@@ -1,5 +1,5 @@
-/* Files of components over the half vector that another program wrote (tests/data/generate/layer_files.py): both kinds
- * of maps are read, and say what the document says of them. */
+/* Files of components over the half vector that another program wrote (tests/data/generate/component_files.py): both
+ * kinds of maps are read, and say what the document says of them. */
 #include "tests/support/cmocka_all.h"
 
 #include "btf/direction/direction.h"

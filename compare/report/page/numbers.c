@@ -154,8 +154,8 @@ static void print_levels(weft_page *page, const weft_material *material)
     if (weft_material_has_components_alone(material))
         return;
     fprintf(page->html, "<h2>Error of the %s on the samples it was fitted to, level by level</h2>\n",
-            material->components ? weft_material_errors_of(material) : "material");
-    if (material->components)
+            weft_material_errors_of(material) ? weft_material_errors_of(material) : "material");
+    if (weft_material_errors_of(material))
         fputs("<p class=\"note\">This is what players without components show. The errors of the components stand "
               "above and "
               "below.</p>\n",

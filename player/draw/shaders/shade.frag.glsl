@@ -22,7 +22,7 @@ vec3 level_shown(vec3 value, float level)
 }
 
 #if PRUNED
-// What the scene reaches that the material was pruned for. C twin: btf/material/seen.h.
+// What the scene reaches that the material was pruned for. C twin: btf/material/visibility.h.
 uniform highp usampler2DArray seen_maps; // of views, of lights, of the places of each level
 uniform float seen_finest, seen_coarsest; // levels beyond which the material had others
 uniform float seen_last_level;

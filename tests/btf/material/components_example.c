@@ -19,9 +19,9 @@ static void fill_shared(weft_components *components)
     for (int i = 0; i <= VIEWS; i++)
         components->first[i] = first[i];
     for (int k = 0; k < COMPONENTS; k++)
-        components->scale[k] = 0.25f / (float)(k + 1);
+        components->scale[k] = 0.015625f / (float)(k + 1);
     for (int i = 0; i < 3 * IMAGES * COMPONENTS; i++)
-        components->value[i] = weft_half_of_float((float)(i % 23) / 16 - 0.5f);
+        components->value[i] = weft_half_of_float((float)(i % 23 - 8));
 }
 
 void components_write_example(const char *path)
@@ -51,7 +51,6 @@ void components_write_example(const char *path)
         for (size_t i = 0; i < 3 * weft_ceiling_count(level->width, level->height); i++)
             level->floor[i] = (uint8_t)(100 + 10 * k + (int)i);
     }
-    material.has_components = material.has_floors = true;
     if (weft_material_write(path, &material, NULL) != WEFT_OK)
         abort();
     weft_material_free(&material);

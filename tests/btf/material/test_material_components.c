@@ -2,6 +2,7 @@
 #include "tests/support/cmocka_all.h"
 
 #include "btf/material/component_rounding.h"
+#include "btf/material/component_section.h"
 #include "btf/material/material.h"
 #include "tests/btf/material/components_example.h"
 #include "tests/btf/material/weft_bytes.h"
@@ -27,7 +28,7 @@ static void components_are_read_back(void **state)
     assert_int_equal(a->component_count, 8);
     assert_int_equal(a->first[2], 3);
     assert_float_equal(a->light[3 * 6], 0.6f, 1e-7);
-    assert_float_equal(a->scale[7], 0.25f / 8, 0);
+    assert_float_equal(a->scale[7], 0.015625f / 8, 0);
     assert_int_equal(a->level[0].coefficient[1], 31 - 127);
     assert_int_equal(a->level[2].ceiling[0], 202);
     assert_int_equal(a->level[2].floor[1], 121);
@@ -40,43 +41,6 @@ static void components_are_read_back(void **state)
                             (size_t)(a->level[k].width * a->level[k].height * 8));
     weft_material_free(&material);
     weft_material_free(&again);
-}
-
-/* A file from before there were floors. */
-static void without_floors_they_are_0(void **state)
-{
-    (void)state;
-    weft_error error = {0};
-    weft_material material, again;
-    components_write_example(NAME);
-    expect_ok(weft_material_read(NAME, &material, &error), &error);
-    assert_true(material.has_floors);
-    material.has_floors = false;
-    expect_ok(weft_material_write("without.weft", &material, &error), &error);
-    expect_ok(weft_material_read("without.weft", &again, &error), &error);
-    assert_false(again.has_floors);
-    for (int k = 0; k < again.level_count; k++)
-        for (size_t i = 0; i < 3 * weft_ceiling_count(again.level[k].width, again.level[k].height); i++)
-            assert_int_equal(again.components->level[k].floor[i], 0);
-    weft_material_free(&material);
-    weft_material_free(&again);
-}
-
-/* Floors of one level announce those of all. */
-static void floors_are_there_on_all_levels(void **state)
-{
-    (void)state;
-    weft_error error = {0};
-    weft_material material;
-    size_t size;
-    components_write_example(NAME);
-    unsigned char *bytes = scratch_load(NAME, &size);
-    memcpy(weft_bytes_entry(bytes, weft_bytes_find(bytes, "FLOR", 1)) + ENTRY_TYPE, "XYZ ", 4);
-    weft_bytes_repair(bytes, size, false);
-    scratch_store(NAME, bytes, size);
-    free(bytes);
-    assert_int_equal(weft_material_read(NAME, &material, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "FLOR"));
 }
 
 /* A floor never says more than what it is made of, and at most a sixteenth less. */
@@ -96,31 +60,6 @@ static void floors_are_rounded_down(void **state)
     assert_int_equal(weft_floor_code(INFINITY), 255);
 }
 
-/* A reader of version 1 from before there were components skips what it does not know, and has the lobes. */
-static void sections_of_layers_can_be_skipped(void **state)
-{
-    (void)state;
-    static const char *const type[] = {"LAYR", "LCOE", "CEIL", "FLOR"};
-    weft_error error = {0};
-    weft_material material;
-    size_t size;
-    components_write_example(NAME);
-    unsigned char *bytes = scratch_load(NAME, &size);
-    for (int i = 0; i < 4; i++)
-        for (uint32_t level = 0; level < 4; level++) {
-            int index = weft_bytes_find(bytes, type[i], level);
-            if (index >= 0)
-                memcpy(weft_bytes_entry(bytes, index) + ENTRY_TYPE, "XYZ ", 4);
-        }
-    weft_bytes_repair(bytes, size, false);
-    scratch_store(NAME, bytes, size);
-    free(bytes);
-    expect_ok(weft_material_read(NAME, &material, &error), &error);
-    assert_null(material.components);
-    assert_int_equal(material.lobe_count, 2);
-    weft_material_free(&material);
-}
-
 /* ---- Differences ---- */
 
 enum { EXAMPLE_VALUES = 7 * 8 * 3 };
@@ -134,17 +73,28 @@ static const weft_half *values_of_example(weft_material *material)
 
 static uint8_t *write_differences(const weft_components *components, size_t *size)
 {
-    *size = weft_components_header_size(components, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES);
+    *size = weft_components_section_size(components, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES);
     uint8_t *bytes = malloc(*size);
-    weft_components_header_write(components, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES, bytes);
+    weft_components_section_write(components, bytes);
     return bytes;
 }
 
-static void read_differences(const uint8_t *bytes, size_t size, weft_components_coding coding,
-                             weft_components **components)
+/* What version 1 wrote; values by differences are not set. */
+static uint8_t *write_version_1(const weft_components *components, weft_value_coding coding, size_t *size)
+{
+    size_t written;
+    uint8_t *bytes = write_differences(components, &written);
+    *size = weft_components_section_size(components, coding);
+    if (coding == WEFT_VALUES_AS_HALVES)
+        memcpy(bytes + *size - EXAMPLE_VALUES * sizeof *components->value, components->value,
+               EXAMPLE_VALUES * sizeof *components->value);
+    return bytes;
+}
+
+static void read_differences(const uint8_t *bytes, size_t size, weft_value_coding coding, weft_components **components)
 {
     const char *fault = NULL;
-    assert_int_equal(weft_components_header_read(bytes, size, coding, 5, 3, 4, components, &fault, NULL), WEFT_OK);
+    assert_int_equal(weft_components_section_read(bytes, size, coding, 5, 3, 4, components, &fault, NULL), WEFT_OK);
 }
 
 /* All signs and sizes, of views of 2, 1 and 4 images. */
@@ -154,14 +104,13 @@ static void values_by_differences_are_read_back(void **state)
     static const int whole[] = {2048, -2048, 2048, 0, 1, -1, -2048, 2048, -2048, 7, 300, -255, 256};
     weft_material material;
     const weft_half *value = values_of_example(&material);
-    assert_false(weft_components_have_differences(material.components));
     for (int i = 0; i < EXAMPLE_VALUES; i++)
         material.components->value[i] = weft_half_of_float((float)whole[i % 13]);
     assert_true(weft_components_have_differences(material.components));
     size_t size;
     uint8_t *bytes = write_differences(material.components, &size);
     weft_components *again;
-    read_differences(bytes, size, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES, &again);
+    read_differences(bytes, size, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES, &again);
     assert_memory_equal(again->value, value, EXAMPLE_VALUES * sizeof *value);
     material.components->value[5] = weft_half_of_float(2050);
     assert_false(weft_components_have_differences(material.components));
@@ -171,15 +120,14 @@ static void values_by_differences_are_read_back(void **state)
 }
 
 /* LAYR of the example in memory, its views of 2, 3 and 2 images, and the codes of layer 0; all others are 0. */
-static uint8_t *header_of_codes(weft_components_coding coding, const unsigned code[7][3], size_t *size)
+static uint8_t *header_of_codes(weft_value_coding coding, const unsigned code[7][3], size_t *size)
 {
     static const uint32_t first[] = {0, 2, 5, 7};
     weft_material material;
     values_of_example(&material);
     memcpy(material.components->first, first, sizeof first);
-    *size = weft_components_header_size(material.components, coding);
-    uint8_t *bytes = malloc(*size), *low = bytes + *size - 2 * EXAMPLE_VALUES, *high = low + EXAMPLE_VALUES;
-    weft_components_header_write(material.components, WEFT_COMPONENTS_AS_THEY_ARE, bytes);
+    uint8_t *bytes = write_version_1(material.components, coding, size);
+    uint8_t *low = bytes + *size - 2 * EXAMPLE_VALUES, *high = low + EXAMPLE_VALUES;
     memset(low, 0, 2 * (size_t)EXAMPLE_VALUES);
     for (int i = 0; i < 21; i++) {
         int at = 24 * (i / 3) + i % 3;
@@ -190,7 +138,7 @@ static uint8_t *header_of_codes(weft_components_coding coding, const unsigned co
     return bytes;
 }
 
-static void expect_read_as(const uint8_t *bytes, size_t size, weft_components_coding coding, const int rgb[7][3])
+static void expect_read_as(const uint8_t *bytes, size_t size, weft_value_coding coding, const int rgb[7][3])
 {
     weft_components *components;
     read_differences(bytes, size, coding, &components);
@@ -208,8 +156,8 @@ static void differences_are_those_of_the_document(void **state)
      * d: (-2 5 -1) (-1 4 1) | (0 -3 -1) (3 -4 1) (299 0 0) | (2 -1 2) (0 -1 -1) */
     static const unsigned code[7][3] = {{3, 10, 1}, {1, 8, 2}, {0, 5, 1}, {6, 7, 2}, {598, 0, 0}, {4, 1, 4}, {0, 1, 1}};
     size_t size;
-    uint8_t *bytes = header_of_codes(WEFT_COMPONENTS_BY_DIFFERENCES, code, &size);
-    expect_read_as(bytes, size, WEFT_COMPONENTS_BY_DIFFERENCES, rgb);
+    uint8_t *bytes = header_of_codes(WEFT_VALUES_BY_DIFFERENCES, code, &size);
+    expect_read_as(bytes, size, WEFT_VALUES_BY_DIFFERENCES, rgb);
     free(bytes);
 }
 
@@ -223,11 +171,11 @@ static void weighted_differences_are_those_of_the_document(void **state)
     static const unsigned code[7][3] = {{3, 10, 1},  {1, 8, 2}, {14, 5, 1}, {6, 7, 2},
                                         {598, 0, 0}, {4, 1, 4}, {17, 1, 1}};
     size_t size;
-    uint8_t *bytes = header_of_codes(WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES, code, &size);
+    uint8_t *bytes = header_of_codes(WEFT_VALUES_BY_WEIGHTED_DIFFERENCES, code, &size);
     uint8_t *weights = bytes + size - 2 * EXAMPLE_VALUES - 8 * sizeof weight;
     memset(weights, 0, 8 * sizeof weight);
     memcpy(weights, weight, sizeof weight);
-    expect_read_as(bytes, size, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES, rgb);
+    expect_read_as(bytes, size, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES, rgb);
     free(bytes);
 }
 
@@ -264,37 +212,42 @@ static void weights_are_those_that_leave_least(void **state)
     weft_material_free(&material);
 }
 
-static uint32_t codec_of_components(const char *path)
-{
-    size_t size;
-    unsigned char *bytes = scratch_load(path, &size);
-    uint32_t codec = weft_bytes_u32(weft_bytes_entry(bytes, weft_bytes_find(bytes, "LAYR", 0)) + ENTRY_CODEC);
-    free(bytes);
-    return codec;
-}
-
-/* Values that grow from image to image are smaller by differences, copies are not. */
-static void a_file_has_the_smaller_of_both(void **state)
+/* Values that are no whole numbers are written as 2048ths of the largest of their component. */
+static void other_values_are_rounded(void **state)
 {
     (void)state;
     weft_error error = {0};
-    for (int copies = 0; copies < 2; copies++) {
-        weft_material material, again;
-        const weft_half *value = values_of_example(&material);
-        for (int i = 0; i < EXAMPLE_VALUES; i++)
-            material.components->value[i] =
-                weft_half_of_float((float)(copies ? i * 7919 % 24 * 80 % 1999 * (i % 24 * 37 % 100) % 2000
-                                                  : i / 24 * (10 + i / 3 % 8) + i / 3 % 8 * 211));
-        if (copies)
-            for (int i = 24; i < EXAMPLE_VALUES; i++)
-                material.components->value[i] = i / 24 % 2 ? 0 : value[i % 24];
-        expect_ok(weft_material_write("whole.weft", &material, &error), &error);
-        assert_int_equal(codec_of_components("whole.weft"), copies ? 1 : 3);
-        expect_ok(weft_material_read("whole.weft", &again, &error), &error);
-        assert_memory_equal(again.components->value, value, EXAMPLE_VALUES * sizeof *value);
-        weft_material_free(&material);
-        weft_material_free(&again);
+    weft_material material, again;
+    const weft_half *value = values_of_example(&material);
+    for (int i = 0; i < EXAMPLE_VALUES; i++)
+        material.components->value[i] = weft_half_of_float(i / 3 % 8 == 2 ? (float)(i % 7) : sinf((float)i));
+    expect_ok(weft_material_write("rounded.weft", &material, &error), &error);
+    expect_ok(weft_material_read("rounded.weft", &again, &error), &error);
+    const weft_components *a = material.components, *b = again.components;
+    assert_true(weft_components_have_differences(b));
+    for (int i = 0; i < EXAMPLE_VALUES; i++) {
+        int k = i / 3 % 8;
+        float was = a->scale[k] * weft_float_of_half(value[i]), is = b->scale[k] * weft_float_of_half(b->value[i]);
+        assert_float_equal(is, was, k == 2 ? 0 : a->scale[k] / 4090);
     }
+    weft_material_free(&material);
+    weft_material_free(&again);
+}
+
+/* Weights of up to 4 would leave differences of more than 16 bits: then others are taken. */
+static void extreme_values_are_read_back(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material, again;
+    const weft_half *value = values_of_example(&material);
+    for (int i = 0; i < EXAMPLE_VALUES; i++)
+        material.components->value[i] = weft_half_of_float((i * 2654435761u >> 13 & 1) ? 2048.0f : -2048.0f);
+    expect_ok(weft_material_write("extreme.weft", &material, &error), &error);
+    expect_ok(weft_material_read("extreme.weft", &again, &error), &error);
+    assert_memory_equal(again.components->value, value, EXAMPLE_VALUES * sizeof *value);
+    weft_material_free(&material);
+    weft_material_free(&again);
 }
 
 /* Rounded, all values are whole numbers: of a layer that no texel has any of, too. */
@@ -302,7 +255,6 @@ static void an_empty_layer_keeps_none_from_packing(void **state)
 {
     (void)state;
     enum { EMPTY = 5 };
-    weft_error error = {0};
     weft_material material;
     values_of_example(&material);
     weft_components *components = material.components;
@@ -313,11 +265,10 @@ static void an_empty_layer_keeps_none_from_packing(void **state)
         for (size_t i = 0; i < texels; i++)
             group[WEFT_COMPONENTS_GROUP * i + EMPTY % WEFT_COMPONENTS_GROUP] = 0;
     }
+    components->value[0] = weft_half_of_float(0.3f);
     assert_false(weft_components_have_differences(components));
     weft_components_round_values(0.01, components);
     assert_true(weft_components_have_differences(components));
-    expect_ok(weft_material_write("empty.weft", &material, &error), &error);
-    assert_int_equal(codec_of_components("empty.weft"), 3);
     weft_material_free(&material);
 }
 
@@ -365,8 +316,8 @@ static void values_too_large_are_refused(void **state)
         bytes[size - 1] = 16; /* 4096: 2048; with 2 more: 2049; with 1 more: -2049 */
         weft_components *components = NULL;
         const char *fault = NULL;
-        assert_int_equal(weft_components_header_read(bytes, size, WEFT_COMPONENTS_BY_WEIGHTED_DIFFERENCES, 5, 3, 4,
-                                                     &components, &fault, NULL),
+        assert_int_equal(weft_components_section_read(bytes, size, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES, 5, 3, 4,
+                                                      &components, &fault, NULL),
                          WEFT_BAD_INPUT);
         assert_non_null(strstr(fault, "no whole number"));
         free(bytes);
@@ -387,9 +338,8 @@ static header take_header(void)
     weft_material material;
     components_write_example(NAME);
     assert_int_equal(weft_material_read(NAME, &material, NULL), WEFT_OK);
-    header h = {.size = weft_components_header_size(material.components, WEFT_COMPONENTS_AS_THEY_ARE)};
-    h.bytes = malloc(h.size);
-    weft_components_header_write(material.components, WEFT_COMPONENTS_AS_THEY_ARE, h.bytes);
+    header h;
+    h.bytes = write_version_1(material.components, WEFT_VALUES_AS_HALVES, &h.size);
     weft_material_free(&material);
     return h;
 }
@@ -399,7 +349,7 @@ static void expect_fault(header h, const char *what)
     weft_components *components = NULL;
     const char *fault = NULL;
     assert_int_equal(
-        weft_components_header_read(h.bytes, h.size, WEFT_COMPONENTS_AS_THEY_ARE, 5, 3, 4, &components, &fault, NULL),
+        weft_components_section_read(h.bytes, h.size, WEFT_VALUES_AS_HALVES, 5, 3, 4, &components, &fault, NULL),
         WEFT_BAD_INPUT);
     assert_non_null(fault);
     assert_non_null(strstr(fault, what));
@@ -452,7 +402,7 @@ static void every_field_is_checked(void **state)
     expect_fault(h, "too short");
 }
 
-/* Coefficients of another number of components than LAYR says. */
+/* Another number of components than the header says. */
 static void coefficients_must_be_those_of_the_components(void **state)
 {
     (void)state;
@@ -461,15 +411,11 @@ static void coefficients_must_be_those_of_the_components(void **state)
     size_t size;
     components_write_example(NAME);
     unsigned char *bytes = scratch_load(NAME, &size);
-    unsigned char *entry = weft_bytes_entry(bytes, weft_bytes_find(bytes, "LAYR", 0));
-    /* The example is small enough to be stored as it is. */
-    if (weft_bytes_u32(entry + ENTRY_CODEC) == 0) {
-        bytes[weft_bytes_u64(entry + ENTRY_OFFSET) + 4] = 12;
-        weft_bytes_repair(bytes, size, true);
-        scratch_store(NAME, bytes, size);
-        assert_int_equal(weft_material_read(NAME, &material, &error), WEFT_BAD_INPUT);
-        assert_non_null(strstr(error.message, "not those of the coefficients"));
-    }
+    weft_bytes_put_u32(bytes + 56, 12);
+    weft_bytes_repair(bytes, size, false);
+    scratch_store(NAME, bytes, size);
+    assert_int_equal(weft_material_read(NAME, &material, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "section COEF of level 0: its size does not fit the material"));
     free(bytes);
 }
 
@@ -491,15 +437,13 @@ int test_material_components(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_are_read_back),
-        cmocka_unit_test(without_floors_they_are_0),
-        cmocka_unit_test(floors_are_there_on_all_levels),
         cmocka_unit_test(floors_are_rounded_down),
-        cmocka_unit_test(sections_of_layers_can_be_skipped),
         cmocka_unit_test(values_by_differences_are_read_back),
         cmocka_unit_test(differences_are_those_of_the_document),
         cmocka_unit_test(weighted_differences_are_those_of_the_document),
         cmocka_unit_test(weights_are_those_that_leave_least),
-        cmocka_unit_test(a_file_has_the_smaller_of_both),
+        cmocka_unit_test(other_values_are_rounded),
+        cmocka_unit_test(extreme_values_are_read_back),
         cmocka_unit_test(an_empty_layer_keeps_none_from_packing),
         cmocka_unit_test(coarser_levels_are_rounded_less),
         cmocka_unit_test(values_too_large_are_refused),

@@ -79,8 +79,6 @@ static void expect_same_texel(const weft_material *a, int k, size_t i, const wef
         assert_memory_equal(p->lobe + 4 * (plane * ni + i), q->lobe + 4 * (plane * nj + j), 8);
     for (size_t view = 0; view < (size_t)a->view_count; view++)
         assert_memory_equal(p->table + 4 * (view * ni + i), q->table + 4 * (view * nj + j), 4);
-    for (size_t light = 0; light < (size_t)a->light_count; light++)
-        assert_memory_equal(p->light_table + 4 * (light * ni + i), q->light_table + 4 * (light * nj + j), 4);
 }
 
 static void texels_and_levels_are_moved_alike(void **state)
@@ -138,10 +136,8 @@ static void a_ceiling_is_the_largest_of_what_is_mixed_and_a_floor_the_least(void
     weft_material material;
     expect_ok(weft_material_create(24, 8, 0, 0, 0, 0, &material, &error), &error);
     expect_ok(weft_components_create(&shape, 24, 8, 1, &material.components, &error), &error);
-    material.has_components = true;
     memcpy(material.components->level[0].ceiling, (uint8_t[]){50, 90, 70}, 3);
     memcpy(material.components->level[0].floor, (uint8_t[]){40, 5, 9, 20, 7, 8, 30, 6, 7}, 9);
-    material.has_floors = true;
     for (int i = 0; i < 6; i++) {
         int a = i % 3, b = (i % 3 + 1 + i / 3) % 3;
         weft_texel_mix mix = {{{8 * a, 0, 0.75f}, {8 * b + 3, 5, 0.25f}}};
@@ -153,7 +149,6 @@ static void a_ceiling_is_the_largest_of_what_is_mixed_and_a_floor_the_least(void
             int of_a = least[3 * a + c], of_b = least[3 * b + c];
             assert_int_equal(one.components->level[0].floor[c], of_a < of_b ? of_a : of_b);
         }
-        assert_true(one.has_floors);
         weft_material_free(&one);
     }
     weft_material_free(&material);

@@ -75,25 +75,6 @@ static void the_section_is_as_the_document_says(void **state)
     free(section);
 }
 
-/* A reader from before there were heights skips them, and has the components. */
-static void heights_can_be_skipped(void **state)
-{
-    (void)state;
-    size_t size;
-    heights_write_example(NAME);
-    unsigned char *bytes = scratch_load(NAME, &size);
-    memcpy(weft_bytes_entry(bytes, weft_bytes_find(bytes, "HGHT", 0)) + ENTRY_TYPE, "XYZ ", 4);
-    weft_bytes_repair(bytes, size, false);
-    scratch_store(NAME, bytes, size);
-    free(bytes);
-    weft_error error = {0};
-    weft_material material;
-    expect_ok(weft_material_read(NAME, &material, &error), &error);
-    assert_null(material.heights);
-    assert_non_null(material.components);
-    weft_material_free(&material);
-}
-
 /* ---- Damage ---- */
 
 /* The section of the example with some bytes at `offset` overwritten. */
@@ -172,7 +153,6 @@ static void heights_lose_a_level_with_the_material(void **state)
     assert_float_equal(material.heights->size_mm[0], 2.5, 0);
     weft_material_drop_finest(&material);
     assert_null(material.heights);
-    assert_false(material.has_heights);
     weft_material_free(&material);
 }
 
@@ -231,7 +211,6 @@ int test_material_heights(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heights_are_read_back),
         cmocka_unit_test(the_section_is_as_the_document_says),
-        cmocka_unit_test(heights_can_be_skipped),
         cmocka_unit_test(damaged_heights_are_named),
         cmocka_unit_test(a_file_with_damaged_heights_is_refused_by_name),
         cmocka_unit_test(heights_that_no_file_holds_are_refused),

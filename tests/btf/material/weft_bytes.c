@@ -1,7 +1,7 @@
 #include "tests/btf/material/weft_bytes.h"
 
 #include "btf/direction/direction.h"
-#include "btf/material/models.h"
+#include "btf/material/material.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -61,19 +61,6 @@ void weft_bytes_repair(unsigned char *file, size_t size, bool sections)
     weft_bytes_put_u32(file + 60, (uint32_t)checksum);
 }
 
-/* Leaves one lobe, and every other time neither T nor S. */
-static void drop_parts(const weft_material *material, weft_material_level *level, int texel)
-{
-    static const weft_half no_lobe[4] = {0, 0, 0, 0x3c00};
-    int texels = level->width * level->height;
-    for (int plane = 3; plane < 3 * material->lobe_count; plane++)
-        memcpy(level->lobe + 4 * (plane * texels + texel), no_lobe, sizeof no_lobe);
-    for (int view = 0; texel % 4 == 1 && view < material->view_count; view++)
-        memset(level->table + 4 * (view * texels + texel), 255, 4);
-    for (int light = 0; texel % 4 == 1 && light < material->light_count; light++)
-        memset(level->light_table + 4 * (light * texels + texel), 255, 4);
-}
-
 static void fill_level(weft_material *material, int k)
 {
     weft_material_level *level = &material->level[k];
@@ -81,32 +68,24 @@ static void fill_level(weft_material *material, int k)
     for (int i = 0; i < 3 * texels; i++)
         level->frame[i] = (int16_t)(1000 * (k + 1) + 37 * i);
     for (int i = 0; i < 4 * texels; i++)
-        level->diffuse[i] = i % 4 == 3 ? 0 : weft_half_of_float((float)(k + i + 1) / 64);
+        level->diffuse[i] = weft_half_of_float((float)(k + i + 1) / 64);
     for (int i = 0; i < material->lobe_count * 12 * texels; i++)
         level->lobe[i] = weft_half_of_float((float)(i % 4 == 3 ? 1 + i % 60 : i % 11 - 5) / 4);
     for (int i = 0; i < material->view_count * 4 * texels; i++)
         level->table[i] = (uint8_t)(i * 7 + k);
-    for (int i = 0; i < material->light_count * 4 * texels; i++)
-        level->light_table[i] = (uint8_t)(i * 5 + 3 * k);
-    for (int i = 1; i < texels; i += 2)
-        drop_parts(material, level, i);
     level->error = (weft_error_summary){0.01 + k, 0.02 + k, 0.03 + k, 0.04 + k, 50.0 + k, 0};
 }
 
 void weft_bytes_write_example(const char *path)
 {
     weft_material material;
-    if (weft_material_create(5, 3, 2, 4, 3, 1, &material, NULL) != WEFT_OK)
+    if (weft_material_create(5, 3, 2, 4, 0, 1, &material, NULL) != WEFT_OK)
         abort();
     material.texel_pitch_mm = 0.125;
     for (int i = 0; i < material.view_count; i++)
         material.view[i] = weft_direction_of_angles(weft_ubo81_angles(i));
-    for (int i = 0; i < material.light_count; i++)
-        material.light[i] = weft_direction_of_angles(weft_ubo81_angles(i + 1));
     for (int k = 0; k < material.level_count; k++)
         fill_level(&material, k);
-    if (weft_material_find_models(&material, NULL) != WEFT_OK)
-        abort();
     free(material.metadata);
     material.metadata = strdup("{\"provenance\": \"made by a test\"}");
     if (!material.metadata || weft_material_write(path, &material, NULL) != WEFT_OK)

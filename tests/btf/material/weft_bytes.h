@@ -33,7 +33,8 @@ int weft_bytes_find(unsigned char *file, const char type[4], uint32_t level);
 /* Makes the checksums right again, those of sections too where asked, as far as sections lie inside the file. */
 void weft_bytes_repair(unsigned char *file, size_t size, bool sections);
 
-/* Writes a material of 5 x 3 texels, all levels, 2 lobes, 4 views, 3 lights, with distinct contents. */
+/* Writes a material of 5 x 3 texels, all levels, 2 lobes with ceilings, 4 views with opacity, with distinct
+ * contents. */
 void weft_bytes_write_example(const char *path);
 
 #endif

@@ -4,8 +4,8 @@ B (l . h), once with maps of B (l . h)^2 (docs/reference/weft-format.md, 7.1). E
 the first divided by l . h, so that both have the same maps: under light l and half vector h the second says 1 / (l . h)
 times what the first says.
 
-    layer_files.py FOLDER     writes them
-    layer_files.py            compares them with the kept ones; exit code 1 where they differ
+    component_files.py FOLDER     writes them
+    component_files.py            compares them with the kept ones; exit code 1 where they differ
 
 Written from the document alone: nothing here is Weft's.
 """
