@@ -4,6 +4,9 @@
 
 #include "geometry/light/ray_scene.h"
 #include "geometry/yarn/fibre.h"
+#include "geometry/yarn/tile_mesh.h"
+
+#include <stdbool.h>
 
 /* Where paths run; not owned. */
 typedef struct weft_path_scene {
@@ -39,5 +42,17 @@ weft_vec3 weft_path_above(const weft_path_scene *scene, weft_vec3 at, weft_vec3 
 
 /* The normal of the smooth surface at a vertex: that of the triangle is in its hit. Pure. */
 weft_vec3 weft_path_surface_normal(const weft_path_scene *scene, const weft_path_vertex *vertex);
+
+/* ---- Steps that do not depend on where rays are traced ---- */
+
+/* Where a ray that leaves the surface at a place starts, so that it does not meet it again. */
+weft_vec3 weft_path_ray_start(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal);
+
+/* A direction whose density is the cosine to the normal over pi, from a point of [0, 1)^2; `tangent` is unit and
+ * perpendicular to the normal. */
+weft_vec3 weft_path_cosine_direction(weft_vec3 normal, weft_vec3 tangent, const double point[2]);
+
+/* Carries throughput over a reflection into such a direction: times f pi. False where hardly anything is left. */
+bool weft_path_reflect(weft_rgb f, weft_rgb *throughput);
 
 #endif

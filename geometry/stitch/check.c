@@ -1,6 +1,5 @@
 /* Whether the yarns of a stitch are solids that keep out of each other. */
 #include "geometry/stitch/segment_grid.h"
-#include "geometry/stitch/syntax.h"
 
 #include <stdbool.h>
 

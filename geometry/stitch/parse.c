@@ -1,6 +1,7 @@
 /* The grammar of a stitch file (docs/reference/stitch-format.md). */
 #include "base/text/block_parser.h"
-#include "geometry/stitch/syntax.h"
+#include "base/text/text_file.h"
+#include "geometry/stitch/segment_grid.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -293,7 +294,7 @@ static weft_code parse_stitch(stitch_parser *parser)
     return check_stitch(parser);
 }
 
-weft_code weft_stitch_parse_text(const char *text, const char *path, weft_stitch *stitch, weft_error *error)
+weft_code weft_stitch_parse(const char *text, const char *path, weft_stitch *stitch, weft_error *error)
 {
     *stitch = (weft_stitch){0};
     stitch_parser parser = {.block = {.error = error}, .stitch = stitch};
@@ -301,8 +302,20 @@ weft_code weft_stitch_parse_text(const char *text, const char *path, weft_stitch
     if (code == WEFT_OK)
         code = parse_stitch(&parser);
     weft_lexer_end(&parser.block.lexer);
+    if (code == WEFT_OK)
+        code = weft_stitch_check(stitch, path, error);
     if (code != WEFT_OK)
         weft_stitch_free(stitch);
+    return code;
+}
+
+weft_code weft_stitch_read(const char *path, weft_stitch *stitch, weft_error *error)
+{
+    char *text;
+    *stitch = (weft_stitch){0};
+    WEFT_TRY(weft_text_file_read(path, &text, error));
+    weft_code code = weft_stitch_parse(text, path, stitch, error);
+    free(text);
     return code;
 }
 

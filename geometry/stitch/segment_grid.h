@@ -2,9 +2,41 @@
 #ifndef WEFT_GEOMETRY_STITCH_SEGMENT_GRID_H
 #define WEFT_GEOMETRY_STITCH_SEGMENT_GRID_H
 
-#include "geometry/stitch/skeleton.h"
+#include "geometry/stitch/stitch.h"
 
 #include <stddef.h>
+
+/* ---- Skeletons ---- */
+
+typedef struct weft_yarn_station {
+    weft_vec3 at, tangent, side, up;
+    weft_real arclength; /* from the first station of the strand, mm */
+    int point;           /* control point at or before it */
+} weft_yarn_station;
+
+/* One copy of a yarn. Its last station is the first of its next repeat. */
+typedef struct weft_yarn_strand {
+    int yarn, first_station, station_count;
+    weft_real turns_per_mm; /* twist, rounded so that the plies repeat with the tile */
+} weft_yarn_strand;
+
+typedef struct weft_yarn_skeleton {
+    const weft_stitch *stitch; /* not owned */
+    int station_count, strand_count;
+    weft_yarn_station *station;
+    weft_yarn_strand *strand;
+} weft_yarn_skeleton;
+
+/* Places stations no further apart than a sixth of the smaller radius. The caller frees with weft_yarn_skeleton_free.
+ * Errors: WEFT_BAD_INPUT for more yarn than a tile can hold, or yarn that stands upright, where side is undefined;
+ * they name `path` and the control point. WEFT_SYSTEM. */
+weft_code weft_yarn_skeleton_create(const weft_stitch *stitch, const char *path, weft_yarn_skeleton *skeleton,
+                                    weft_error *error);
+void weft_yarn_skeleton_free(weft_yarn_skeleton *skeleton);
+
+/* The failure "PATH:LINE:COLUMN: message" at a control point of a yarn. */
+weft_code weft_stitch_fail_at(const weft_stitch *stitch, const char *path, int yarn, int point, weft_error *error,
+                              const char *format, ...) __attribute__((format(printf, 6, 7)));
 
 /* A segment, from a station to the next of its strand, shifted by whole tiles. */
 typedef struct weft_near_segment {
@@ -40,5 +72,10 @@ static inline weft_vec3 station_place(const weft_segment_grid *grid, const weft_
     weft_vec3 at = grid->skeleton->station[station].at;
     return weft_vec3_of(at.x + segment->tiles_x * stitch->width, at.y + segment->tiles_y * stitch->height, at.z);
 }
+
+/* ---- Check ---- */
+
+/* Whether the yarns are solids: none bends tighter than its radius, stands upright or runs through another. */
+weft_code weft_stitch_check(const weft_stitch *stitch, const char *path, weft_error *error);
 
 #endif

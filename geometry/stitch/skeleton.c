@@ -1,4 +1,4 @@
-#include "geometry/stitch/skeleton.h"
+#include "geometry/stitch/segment_grid.h"
 
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* One step of a path of light. */
-#include "geometry/light/path_step.h"
+#include "geometry/light/light_path.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>
