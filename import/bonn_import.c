@@ -1,5 +1,4 @@
 /* A file of Bonn as a collection of photographs, and its images put into the dataset. */
-#include "import/bonn/frames.h"
 #include "import/bonn/images.h"
 #include "import/far_photograph.h"
 #include "import/readers.h"
@@ -57,7 +56,7 @@ static weft_code put_image(const weft_import_run *run, int index, weft_image *im
                            weft_error *error)
 {
     size_t at, width = (size_t)image->width;
-    weft_divide_by_white(run->decoding.white, image);
+    weft_divide_by_white(run->options->white, image);
     if (weft_find_unstorable(image, &at))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': value %g at texel (%zu, %zu) of %s", run->source,
                          (double)image->pixels[at], at / 3 % width, at / 3 / width,

@@ -1,4 +1,4 @@
-#include "import/colour_messages.h"
+#include "import/run.h"
 
 #include "import/angle_name.h"
 

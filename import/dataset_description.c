@@ -1,4 +1,4 @@
-#include "import/dataset_description.h"
+#include "import/run.h"
 
 #include "base/text/json_text.h"
 

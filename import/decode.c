@@ -15,14 +15,14 @@ static weft_code find_colours(const weft_decoding *decoding, const char *path, w
                               weft_colour_claim *claim, weft_error *error)
 {
     WEFT_TRY(weft_colour_claim_read(path, claim, error));
-    if (decoding->colours != WEFT_IMPORT_AS_SAID) {
+    if (decoding->options->colours != WEFT_IMPORT_AS_SAID) {
         claim->kind = WEFT_CLAIM_CLEAR;
         claim->words[0] = 0;
-        weft_colour_space_make((weft_known_colours)(decoding->colours - WEFT_IMPORT_SRGB), &claim->space);
+        weft_colour_space_make((weft_known_colours)(decoding->options->colours - WEFT_IMPORT_SRGB), &claim->space);
         if (claim->is_grey)
             weft_colour_space_make_grey(&claim->space);
     }
-    if (decoding->linear || kind == WEFT_IMAGE_FLOAT)
+    if (decoding->options->linear || kind == WEFT_IMAGE_FLOAT)
         weft_colour_space_make_linear(&claim->space);
     return WEFT_OK;
 }
@@ -35,7 +35,7 @@ static void linearise(weft_image *image, const weft_decoding *decoding, const we
     for (size_t i = 0; i < count; i++) {
         float *pixel = image->pixels + 3 * i;
         double brightest = fmax(fmax((double)pixel[0], (double)pixel[1]), (double)pixel[2]);
-        clipped[i] = brightest >= decoding->saturated_at;
+        clipped[i] = brightest >= decoding->options->saturated_at;
         for (int c = 0; c < 3; c++)
             pixel[c] = weft_curve_decode(&space->curve[c], pixel[c]);
     }
@@ -96,7 +96,7 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     if (decoding->distance == WEFT_NEAR)
         divide_by_near_light(decoding, photograph, image);
     weft_colour_space_to_srgb(space, image->pixels, count);
-    weft_divide_by_white(decoding->white, image);
+    weft_divide_by_white(decoding->options->white, image);
     weft_code code = check_finite(image, path, error);
     if (code == WEFT_OK)
         code = weft_reduce(image, clipped, decoding->width, decoding->height, samples, mask, error);
@@ -148,7 +148,7 @@ weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path
     decoded->claim = claim.kind;
     decoded->has_more = claim.has_more;
     /* Whoever says that all are linear has answered. */
-    if (!(claim.kind == WEFT_CLAIM_NONE && decoding->linear))
+    if (!(claim.kind == WEFT_CLAIM_NONE && decoding->options->linear))
         memcpy(decoded->words, claim.words, sizeof decoded->words);
     count_texels(decoding, &claim.space, samples, mask, decoded);
     return WEFT_OK;

@@ -10,12 +10,9 @@
 
 /* What all photographs of a collection share. */
 typedef struct weft_decoding {
-    int source_width, source_height; /* pixels */
-    int width, height;               /* texels */
-    double saturated_at;             /* encoded, integer images only */
-    weft_import_colours colours;
-    double white; /* what is 1 in the dataset */
-    bool linear;  /* integer images hold linear values */
+    int source_width, source_height;    /* pixels */
+    int width, height;                  /* texels */
+    const weft_import_options *options; /* not owned */
     weft_distance distance;
     double pixel_pitch_mm; /* of the photograph; near light only */
 } weft_decoding;

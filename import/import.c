@@ -2,7 +2,6 @@
 
 #include "base/picture/image.h"
 #include "btf/file_kind.h"
-#include "import/dataset_description.h"
 #include "import/readers.h"
 #include "import/reduce.h"
 #include "import/run.h"
@@ -129,10 +128,7 @@ static weft_code import_collection(weft_import_run *run, const weft_bonn_file *b
                                    weft_error *error)
 {
     weft_decoding *decoding = &run->decoding;
-    decoding->saturated_at = run->options->saturated_at;
-    decoding->colours = run->options->colours;
-    decoding->white = run->options->white;
-    decoding->linear = run->options->linear;
+    decoding->options = run->options;
     decoding->distance = run->collection->distance;
     WEFT_TRY(choose_size(run, bonn, error));
     decoding->pixel_pitch_mm = run->collection->side_mm / decoding->source_width;

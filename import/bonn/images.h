@@ -17,4 +17,10 @@ int weft_bonn_group_size(const weft_bonn_file *file);
 weft_code weft_bonn_images_make(const weft_bonn_file *file, const int *number, int count, weft_image *image,
                                 weft_error *error);
 
+/* ---- Frames of the texels ---- */
+
+/* frames [height][width][2][3], unit normal and tangent: the means over the texels of the file whose centres lie in
+ * each. False where one of the file is no frame above the surface, or a mean has no direction. Pure. */
+bool weft_bonn_frames_average(const weft_bonn_file *file, int width, int height, float *frames);
+
 #endif

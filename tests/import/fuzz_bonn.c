@@ -1,5 +1,4 @@
 #include "base/integers.h"
-#include "import/bonn/frames.h"
 #include "import/bonn/images.h"
 #include "tests/support/fuzz.h"
 #include "tests/support/scratch_folder.h"
