@@ -50,15 +50,15 @@ static weft_code check(void *values, weft_error *error)
                : WEFT_OK;
 }
 
-/* ---- The night ---- */
+/* ---- The capture run ---- */
 
-typedef struct night {
+typedef struct prediction {
     weft_expectation expectation;
     int views, unreachable; /* of the plan */
     double allowed_texels;  /* as far as registration looks */
     bool finds, directs;    /* whether it will find the target, and directions are well enough known */
     bool good_enough;       /* both, in every view */
-} night;
+} prediction;
 
 static bool is_new_view(const weft_plan *plan, int shot)
 {
@@ -67,7 +67,7 @@ static bool is_new_view(const weft_plan *plan, int shot)
     return !before || now->theta_rad != before->theta_rad || now->phi_rad != before->phi_rad;
 }
 
-static int list_turns(const weft_axes_sightings *sightings, const weft_plan *plan, weft_turns *turns, night *n)
+static int list_turns(const weft_axes_sightings *sightings, const weft_plan *plan, weft_turns *turns, prediction *n)
 {
     int count = 0;
     for (int shot = 0; shot < plan->shot_count; shot++) {
@@ -82,7 +82,7 @@ static int list_turns(const weft_axes_sightings *sightings, const weft_plan *pla
 }
 
 static weft_code expect(const weft_session *session, const weft_axes_sightings *sightings, const weft_plan *plan,
-                        const weft_axes_fit *fit, const weft_rig_poses *nominal, night *n, weft_error *error)
+                        const weft_axes_fit *fit, const weft_rig_poses *nominal, prediction *n, weft_error *error)
 {
     weft_registration_settings settings = weft_registration_defaults(session);
     double opening_mm = session->target.opening_mm;
@@ -99,13 +99,7 @@ static weft_code expect(const weft_session *session, const weft_axes_sightings *
     return code;
 }
 
-/* ---- Words ---- */
-
-static void say_lines(const weft_common_options *common, const char *before, const weft_lines *lines)
-{
-    for (int i = 0; i < lines->count; i++)
-        weft_command_say(common, "%s%s", before, lines->line[i]);
-}
+/* ---- Messages ---- */
 
 static void say_left_out(const weft_common_options *common, const weft_axes_sightings *sightings)
 {
@@ -114,7 +108,7 @@ static void say_left_out(const weft_common_options *common, const weft_axes_sigh
             weft_command_say(common, "left out %s: %s", sightings->shot[i].name, sightings->shot[i].left_out);
 }
 
-static void say_night(const weft_common_options *common, const night *n)
+static void say_prediction(const weft_common_options *common, const prediction *n)
 {
     const weft_expectation *e = &n->expectation;
     const weft_expected_pose *worst = &e->worst;
@@ -167,7 +161,7 @@ static void say_more_shots(const weft_common_options *common, const weft_axes_re
 }
 
 static void say_poses(const calibrate_command *command, const weft_axes_sightings *sightings,
-                      const weft_axes_report *report, const night *n)
+                      const weft_axes_report *report, const prediction *n)
 {
     const weft_common_options *common = &command->common;
     const weft_poses_file *file = &report->file;
@@ -175,12 +169,11 @@ static void say_poses(const calibrate_command *command, const weft_axes_sighting
                      "%s: %d of %d shots; points are %.3f pixels off in shots that were not fitted, %.3f in those "
                      "that were (RMS)",
                      command->output, report->used, sightings->count, file->held_out_rms_px, file->rms_px);
-    say_lines(common, "  ", &report->told);
+    weft_command_say_lines(common, "  ", &report->found);
     say_more_shots(common, report);
-    say_lines(common, "not determined: ", &report->undetermined);
-    weft_command_say(common,
-                     "not determined: the axes of the light are not seen by the camera; they stay as specified");
-    say_night(common, n);
+    weft_command_say_lines(common, "", &report->undetermined);
+    weft_command_say(common, "The camera cannot see the axes of the light; they stay as specified.");
+    say_prediction(common, n);
 }
 
 static json_t *pack_joint(const weft_poses_file *file, int k)
@@ -193,7 +186,7 @@ static json_t *pack_joint(const weft_poses_file *file, int k)
                      e->point_mm);
 }
 
-static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_report *report, const night *n)
+static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_report *report, const prediction *n)
 {
     const weft_poses_file *file = &report->file;
     const weft_expectation *e = &n->expectation;
@@ -235,18 +228,11 @@ static weft_code finish(const calibrate_command *command, const weft_session *se
                         const weft_axes_sightings *sightings, const weft_plan *plan, const weft_rig_poses *nominal,
                         const weft_axes_report *report, weft_error *error)
 {
-    night n = {0};
+    prediction n = {0};
     WEFT_TRY(expect(session, sightings, plan, &report->fit, nominal, &n, error));
     WEFT_TRY(write_poses(command, sightings, report, error));
     say_poses(command, sightings, report, &n);
-    json_t *event = pack_poses(sightings, report, &n);
-    char *line = event ? json_dumps(event, JSON_COMPACT) : NULL;
-    json_decref(event);
-    if (!line)
-        return weft_fail_memory(error, "event", 0);
-    weft_command_event(&command->common, line);
-    free(line);
-    return WEFT_OK;
+    return weft_command_event_of(&command->common, pack_poses(sightings, report, &n), error);
 }
 
 static weft_code calibrate(const calibrate_command *command, const weft_session *session, const weft_plan *plan,

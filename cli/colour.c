@@ -45,7 +45,7 @@ static weft_code check(void *values, weft_error *error)
                : WEFT_OK;
 }
 
-/* ---- Words ---- */
+/* ---- Messages ---- */
 
 static void say_patches(const weft_common_options *common, const weft_colour_report *report)
 {
@@ -72,8 +72,7 @@ static void say_colour(const colour_command *command, const weft_colour_report *
                      colour->fitted.worst);
     weft_command_say(common, "the lamp lights one corner of the chart %.2f times as much as another",
                      report->lamp_range);
-    for (int i = 0; i < report->warnings.count; i++)
-        weft_command_say(common, "warning: %s", report->warnings.line[i]);
+    weft_command_say_lines(common, "warning: ", &report->warnings);
 }
 
 /* ---- The file ---- */
@@ -107,16 +106,13 @@ static weft_code show_event(const colour_command *command, const weft_colour_rep
 {
     json_t *event = json_pack("{ss si}", "event", "colour", "used", report->used);
     json_t *packed = weft_colour_pack(&report->colour);
-    char *line = NULL;
-    if (event && packed && json_object_update(event, packed) == 0 && json_object_update(event, record) == 0)
-        line = json_dumps(event, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    bool is_complete = packed && json_object_update(event, packed) == 0 && json_object_update(event, record) == 0;
     json_decref(packed);
-    json_decref(event);
-    if (!line)
-        return weft_fail_memory(error, "event", 0);
-    weft_command_event(&command->common, line);
-    free(line);
-    return WEFT_OK;
+    if (!is_complete) {
+        json_decref(event);
+        event = NULL;
+    }
+    return weft_command_event_of(&command->common, event, error);
 }
 
 static weft_code keep(const colour_command *command, const weft_colour_report *report, weft_error *error)

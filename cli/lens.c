@@ -103,13 +103,7 @@ static weft_code list_photographs(const weft_lines *input, weft_lines *names, we
     return WEFT_OK;
 }
 
-/* ---- Words ---- */
-
-static void say_lines(const weft_common_options *common, const char *before, const weft_lines *lines)
-{
-    for (int i = 0; i < lines->count; i++)
-        weft_command_say(common, "%s%s", before, lines->line[i]);
-}
+/* ---- Messages ---- */
 
 static void say_left_out(const weft_common_options *common, const weft_lens_report *report)
 {
@@ -132,8 +126,8 @@ static void say_lens(const lens_command *command, const weft_lens_report *report
                          weft_lens_parameter(&lens->camera, i), i < 4 ? 3 : 6, lens->standard_error[i]);
     weft_command_say(common, "the focal length is known to %.2f %%, the middle to %.1f, %.1f pixels",
                      100 * report->focal_error, lens->standard_error[2], lens->standard_error[3]);
-    say_lines(common, "", &report->fixed);
-    say_lines(common, "warning: ", &report->warnings);
+    weft_command_say_lines(common, "", &report->fixed);
+    weft_command_say_lines(common, "warning: ", &report->warnings);
 }
 
 static void add_values(json_t **event, const weft_lens *lens)
@@ -153,13 +147,7 @@ static weft_code show_event(const lens_command *command, const weft_lens_report 
                               "photographs", report->count, "tilt_deg", weft_deg_of_rad(report->tilt_rad), "reach",
                               report->reach, "pattern_px", report->pattern, "noise_px", report->noise);
     add_values(&event, &report->lens);
-    char *line = event ? json_dumps(event, JSON_COMPACT) : NULL;
-    json_decref(event);
-    if (!line)
-        return weft_fail_memory(error, "event", 0);
-    weft_command_event(&command->common, line);
-    free(line);
-    return WEFT_OK;
+    return weft_command_event_of(&command->common, event, error);
 }
 
 static weft_code calibrate(lens_command *command, const weft_lines *names, weft_error *error)

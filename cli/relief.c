@@ -3,7 +3,6 @@
 #include "base/text/json_text.h"
 #include "cli/command/arguments.h"
 #include "cli/command/heights.h"
-#include "relief/keep.h"
 #include "relief/move.h"
 #include "relief/page.h"
 #include "relief/surface.h"

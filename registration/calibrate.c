@@ -1,4 +1,4 @@
-#include "registration/calibrate.h"
+#include "registration/steps.h"
 
 #include "base/numeric/cholesky.h"
 #include "registration/pose/markers.h"
@@ -19,33 +19,33 @@ static const double prior_mm = 1;
 static const double settled_mm = 0.01;
 
 /* One of the viewpoints it is found from. */
-typedef struct witness {
+typedef struct sample {
     int viewpoint;       /* index into the survey */
     weft_viewpoint some; /* of its photographs */
     int shot[most_photographs];
-    float *average; /* NULL: it says nothing */
+    float *average; /* NULL: none can be used */
     bool located;
     weft_refinement refinement;
-} witness;
+} sample;
 
-typedef struct court {
+typedef struct calibration {
     const weft_session *session;
     const weft_sensor_defects *faults;
     weft_registration *registration;
     weft_sight *sight;
     int count;
-    witness witness[most_viewpoints];
-} court;
+    sample sample[most_viewpoints];
+} calibration;
 
-/* Stays evenly spread over the survey, and of each some photographs evenly spread over its lights. */
-static void call_witnesses(court *c)
+/* Viewpoints evenly spread over the survey, and of each some photographs evenly spread over its lights. */
+static void choose_samples(calibration *c)
 {
     const weft_survey *survey = &c->registration->survey;
     size_t bytes = weft_photograph_sample_count(c->session) / 3 * sizeof(float);
     int room = (int)fmin(most_viewpoints, fmax(1, (double)(average_bytes / bytes)));
     c->count = survey->viewpoint_count < room ? survey->viewpoint_count : room;
     for (int i = 0; i < c->count; i++) {
-        witness *w = &c->witness[i];
+        sample *w = &c->sample[i];
         w->viewpoint = (int)((long)i * survey->viewpoint_count / c->count);
         const weft_viewpoint *all = &survey->viewpoint[w->viewpoint];
         int count = all->count < most_photographs ? all->count : most_photographs;
@@ -55,11 +55,11 @@ static void call_witnesses(court *c)
     }
 }
 
-static weft_code read_average(court *c, witness *w, weft_error *error)
+static weft_code read_average(calibration *c, sample *w, weft_error *error)
 {
     weft_viewpoint_photographs photographs;
     WEFT_TRY(
-        weft_viewpoint_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error));
+        weft_viewpoint_photographs_read(c->faults, c->sight, &w->some, c->registration->fault, &photographs, error));
     if (photographs.usable_count > 0) {
         w->average = photographs.average;
         photographs.average = NULL;
@@ -69,30 +69,30 @@ static weft_code read_average(court *c, witness *w, weft_error *error)
 }
 
 /* A first pose: the markers are enough. Without them, that of the chain. */
-static weft_code locate(court *c, witness *w, weft_error *error)
+static weft_code locate(calibration *c, sample *w, weft_error *error)
 {
     const weft_pose_limits *limits = &c->registration->settings.limits;
     weft_angles view = c->registration->survey.view[w->some.view];
-    weft_pose promised_pose = weft_session_pose(c->session, view);
-    weft_homography promised = weft_homography_of_pose(&c->session->camera, &promised_pose);
+    weft_pose predicted_pose = weft_session_pose(c->session, view);
+    weft_homography predicted = weft_homography_of_pose(&c->session->camera, &predicted_pose);
     weft_marker_start markers;
     weft_view_pose pose;
-    WEFT_TRY(weft_markers_locate(c->sight, &c->session->target, w->average, &promised, &markers, error));
-    w->located = weft_markers_trusted(&markers, &promised, c->sight->opening_mm, limits);
+    WEFT_TRY(weft_markers_locate(c->sight, &c->session->target, w->average, &predicted, &markers, error));
+    w->located = weft_markers_trusted(&markers, &predicted, c->sight->opening_mm, limits);
     w->refinement.homography = markers.homography;
     if (w->located)
         return WEFT_OK;
-    WEFT_TRY(weft_pose_find(c->sight, &c->session->target, w->average, &promised, (weft_point_spread){0, 0}, limits,
+    WEFT_TRY(weft_pose_find(c->sight, &c->session->target, w->average, &predicted, (weft_point_spread){0, 0}, limits,
                             &pose, error));
     w->refinement.homography = pose.homography;
     w->located = pose.source == WEFT_POSE_DRAWING;
     return WEFT_OK;
 }
 
-static weft_code locate_all(court *c, weft_error *error)
+static weft_code locate_all(calibration *c, weft_error *error)
 {
     for (int i = 0; i < c->count; i++) {
-        witness *w = &c->witness[i];
+        sample *w = &c->sample[i];
         WEFT_TRY(read_average(c, w, error));
         if (w->average)
             WEFT_TRY(locate(c, w, error));
@@ -100,13 +100,13 @@ static weft_code locate_all(court *c, weft_error *error)
     return WEFT_OK;
 }
 
-/* Sums what the viewpoints say of the bend, each refined under the present one. */
-static weft_code hear(court *c, weft_bend_evidence *sum, int *heard, weft_error *error)
+/* Sums what the viewpoints determine of the bend, each refined under the present one. */
+static weft_code weigh_all(calibration *c, weft_bend_evidence *sum, int *used, weft_error *error)
 {
     *sum = (weft_bend_evidence){0};
-    *heard = 0;
+    *used = 0;
     for (int i = 0; i < c->count; i++) {
-        witness *w = &c->witness[i];
+        sample *w = &c->sample[i];
         weft_bend_evidence own;
         if (!w->located)
             continue;
@@ -119,13 +119,13 @@ static weft_code hear(court *c, weft_bend_evidence *sum, int *heard, weft_error 
             for (int j = 0; j < 3; j++)
                 sum->information[k][j] += own.information[k][j];
         }
-        (*heard)++;
+        (*used)++;
     }
     return WEFT_OK;
 }
 
 /* Moves the bend to where evidence and prior meet. Returns by how much, mm at the unit; negative where it cannot. */
-static double judge(court *c, const weft_bend_evidence *evidence)
+static double move_bend(calibration *c, const weft_bend_evidence *evidence)
 {
     double unit = weft_bend_unit_mm(c->sight), square = unit * unit, matrix[3][3], change[3], largest = 0;
     weft_bend *bend = &c->sight->bend;
@@ -152,23 +152,23 @@ static double judge(court *c, const weft_bend_evidence *evidence)
     return largest;
 }
 
-static weft_code find_bend(court *c, weft_error *error)
+static weft_code find_bend(calibration *c, weft_error *error)
 {
     weft_bend_found *found = &c->registration->found.bend;
     double change = INFINITY;
     for (int round = 0; round < most_rounds && change > settled_mm; round++) {
         weft_bend_evidence evidence;
-        WEFT_TRY(hear(c, &evidence, &found->viewpoints, error));
+        WEFT_TRY(weigh_all(c, &evidence, &found->viewpoints, error));
         if (found->viewpoints == 0)
             return WEFT_OK;
-        change = judge(c, &evidence);
+        change = move_bend(c, &evidence);
     }
     found->bend = c->sight->bend;
     found->unit_mm = weft_bend_unit_mm(c->sight);
     return WEFT_OK;
 }
 
-static weft_code add_vignetting(const court *c, const witness *w, const weft_reference_pixels *reference,
+static weft_code add_vignetting(const calibration *c, const sample *w, const weft_reference_pixels *reference,
                                 weft_vignetting_sums *sums, weft_error *error)
 {
     weft_viewpoint_photographs photographs;
@@ -176,13 +176,11 @@ static weft_code add_vignetting(const court *c, const witness *w, const weft_ref
     if (!scratch)
         return weft_fail_memory(error, "a photograph", weft_photograph_sample_count(c->session) * sizeof *scratch);
     weft_code code =
-        weft_viewpoint_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error);
+        weft_viewpoint_photographs_read(c->faults, c->sight, &w->some, c->registration->fault, &photographs, error);
     for (int i = 0; code == WEFT_OK && i < w->some.count; i++) {
-        const uint16_t *samples =
-            photographs.usable[i] ? weft_viewpoint_photographs_samples(&photographs, i, scratch) : NULL;
         weft_exposure exposure = weft_exposure_of(c->session, w->shot[i]);
-        if (samples)
-            weft_vignetting_add(c->sight, &c->session->target, reference, samples, &exposure, sums);
+        if (photographs.usable[i] && weft_viewpoint_photographs_samples(&photographs, i, scratch))
+            weft_vignetting_add(c->sight, &c->session->target, reference, scratch, &exposure, sums);
     }
     if (code == WEFT_OK)
         weft_viewpoint_photographs_free(&photographs);
@@ -190,11 +188,11 @@ static weft_code add_vignetting(const court *c, const witness *w, const weft_ref
     return code;
 }
 
-static weft_code find_vignetting(court *c, weft_error *error)
+static weft_code find_vignetting(calibration *c, weft_error *error)
 {
     weft_vignetting_sums sums = {0};
     for (int i = 0; i < c->count; i++) {
-        const witness *w = &c->witness[i];
+        const sample *w = &c->sample[i];
         weft_reference_pixels reference;
         if (!w->located)
             continue;
@@ -212,18 +210,18 @@ static weft_code find_vignetting(court *c, weft_error *error)
 weft_code weft_calibrate(const weft_sensor_defects *faults, weft_registration *registration, weft_sight *sight,
                          weft_error *error)
 {
-    court *c = calloc(1, sizeof *c);
+    calibration *c = calloc(1, sizeof *c);
     if (!c)
         return weft_fail_memory(error, "a calibration", sizeof *c);
-    *c = (court){.session = &faults->seen, .faults = faults, .registration = registration, .sight = sight};
-    call_witnesses(c);
+    *c = (calibration){.session = &faults->seen, .faults = faults, .registration = registration, .sight = sight};
+    choose_samples(c);
     weft_code code = locate_all(c, error);
     if (code == WEFT_OK)
         code = find_bend(c, error);
     if (code == WEFT_OK)
         code = find_vignetting(c, error);
     for (int i = 0; i < c->count; i++)
-        free(c->witness[i].average);
+        free(c->sample[i].average);
     free(c);
     return code;
 }

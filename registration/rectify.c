@@ -1,4 +1,4 @@
-#include "registration/rectify.h"
+#include "registration/steps.h"
 
 #include "registration/radiometry/bracket.h"
 #include "registration/resample/resample.h"
@@ -150,8 +150,8 @@ static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, wef
     *done = false;
     if (!j->photographs->usable[index] || white->patches > 0) /* the latter is in the dataset already */
         return WEFT_OK;
-    const uint16_t *samples = weft_viewpoint_photographs_samples(j->photographs, index, b->samples);
-    if (!samples)
+    const uint16_t *samples = b->samples;
+    if (!weft_viewpoint_photographs_samples(j->photographs, index, b->samples))
         return WEFT_OK;
     *white = weft_white_measure(j->rectifier->sight, &session->target, &j->reference, samples, &exposure);
     if (white->patches == 0) {

@@ -2,16 +2,12 @@
 
 #include "base/clock.h"
 #include "btf/session/camera_list.h"
-#include "registration/calibrate.h"
-#include "registration/rectify.h"
 #include "registration/report/report.h"
-#include "registration/white_estimate.h"
+#include "registration/steps.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const size_t kept_bytes = (size_t)512 << 20;
 
 /* Everything at work. */
 typedef struct work {
@@ -128,10 +124,10 @@ static weft_code find_and_rectify(work *w, int viewpoint, const weft_viewpoint_p
     const weft_session *session = w->rectifier.session;
     weft_registration *registration = w->rectifier.registration;
     weft_view_pose *pose = &registration->pose[viewpoint];
-    weft_pose promised_pose =
+    weft_pose predicted_pose =
         weft_session_pose(session, registration->survey.view[registration->survey.viewpoint[viewpoint].view]);
-    weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
-    WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
+    weft_homography predicted = weft_homography_of_pose(&session->camera, &predicted_pose);
+    WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &predicted, w->point_spread,
                             &registration->settings.limits, pose, error));
     if (pose->source == WEFT_POSE_FAILED)
         return WEFT_OK;
@@ -146,7 +142,7 @@ static weft_code register_viewpoint(work *w, int viewpoint, weft_error *error)
     weft_view_pose *pose = &registration->pose[viewpoint];
     weft_viewpoint_photographs photographs;
     WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.viewpoint[viewpoint],
-                                             kept_bytes, registration->fault, &photographs, error));
+                                             registration->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
         code = find_and_rectify(w, viewpoint, &photographs, error);
@@ -168,7 +164,7 @@ static weft_code rectify_again(work *w, int viewpoint, const weft_white *estimat
     bool unseen = w->shown && registration->used[viewpoint] == 0;
     weft_viewpoint_photographs photographs;
     WEFT_TRY(weft_viewpoint_photographs_read(w->faults, &w->sight, &registration->survey.viewpoint[viewpoint],
-                                             kept_bytes, registration->fault, &photographs, error));
+                                             registration->fault, &photographs, error));
     weft_code code =
         weft_rectify_viewpoint(&w->rectifier, viewpoint, &photographs, estimated, unseen ? w->shown : NULL, error);
     weft_viewpoint_photographs_free(&photographs);

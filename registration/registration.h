@@ -5,7 +5,7 @@
 #include "base/progress.h"
 #include "registration/outcome/outcome.h"
 
-/* 64 x 64 texels; a view within an eighth of the opening of the rig's promise, correlated with its drawing by 0.8. */
+/* 64 x 64 texels; a view within an eighth of the opening of the predicted pose, correlated with its drawing by 0.8. */
 weft_registration_settings weft_registration_defaults(const weft_session *session);
 
 /* Registers `session` into the dataset `output`, and writes the report where one is asked for. On success the caller

@@ -79,63 +79,46 @@ static void finish_average(const weft_sight *sight, const sums *sum, float *aver
     }
 }
 
-/* Reads, judges and sums photograph `index`. */
-static weft_code take_in(weft_viewpoint_photographs *photographs, int index, bool keep, uint16_t *scratch, sums *sum,
-                         weft_fault *fault)
+/* Reads, judges and sums all photographs. */
+static weft_code read_all(weft_viewpoint_photographs *photographs, sums *sum, weft_fault *fault, weft_error *error)
 {
     const weft_session *session = &photographs->faults->seen;
     size_t bytes = weft_photograph_sample_count(session) * sizeof(uint16_t);
-    uint16_t *samples = keep ? malloc(bytes) : scratch;
-    int64_t brightness;
-    if (!samples)
-        return WEFT_SYSTEM;
-    weft_code code =
-        read_one(photographs->faults, photographs->shot[index], samples, &brightness, &fault[photographs->shot[index]]);
-    photographs->usable[index] = code == WEFT_OK;
-    if (keep)
-        photographs->samples[index] = samples;
-    if (code == WEFT_OK) {
-#pragma omp critical(weft_viewpoint_photographs_sum)
-        add_photograph(session, samples, brightness, sum);
-    }
-    return WEFT_OK;
-}
-
-static weft_code read_all(weft_viewpoint_photographs *photographs, bool keep, sums *sum, weft_fault *fault,
-                          weft_error *error)
-{
-    size_t bytes = weft_photograph_sample_count(&photographs->faults->seen) * sizeof(uint16_t);
     bool short_of_memory = false;
 #pragma omp parallel reduction(|| : short_of_memory)
     {
-        uint16_t *scratch = keep ? NULL : malloc(bytes);
-        short_of_memory = !keep && !scratch;
+        uint16_t *samples = malloc(bytes);
+        short_of_memory = !samples;
 #pragma omp for schedule(dynamic, 1)
         for (int i = 0; i < photographs->count; i++) {
-            if (!short_of_memory && take_in(photographs, i, keep, scratch, sum, fault) != WEFT_OK)
-                short_of_memory = true;
+            int shot = photographs->shot[i];
+            int64_t brightness;
+            if (short_of_memory || read_one(photographs->faults, shot, samples, &brightness, &fault[shot]) != WEFT_OK)
+                continue;
+            photographs->usable[i] = 1;
+#pragma omp critical(weft_viewpoint_photographs_sum)
+            add_photograph(session, samples, brightness, sum);
         }
-        free(scratch);
+        free(samples);
     }
     return short_of_memory ? weft_fail_memory(error, "the photographs of a viewpoint", bytes) : WEFT_OK;
 }
 
 weft_code weft_viewpoint_photographs_read(const weft_sensor_defects *faults, const weft_sight *sight,
-                                          const weft_viewpoint *viewpoint, size_t memory_bytes, weft_fault *fault,
+                                          const weft_viewpoint *viewpoint, weft_fault *fault,
                                           weft_viewpoint_photographs *photographs, weft_error *error)
 {
     const weft_session *session = &faults->seen;
-    size_t count = (size_t)viewpoint->count, values = weft_photograph_sample_count(session), pixels = values / 3;
+    size_t count = (size_t)viewpoint->count, pixels = weft_photograph_sample_count(session) / 3;
     *photographs = (weft_viewpoint_photographs){.faults = faults, .count = viewpoint->count, .shot = viewpoint->shot};
-    photographs->samples = calloc(count, sizeof *photographs->samples);
     photographs->usable = calloc(count, 1);
     photographs->average = malloc(pixels * sizeof(float));
     sums sum = {calloc(pixels, sizeof *sum.light), calloc(pixels, sizeof *sum.brightness)};
     weft_code code = WEFT_OK;
-    if (!photographs->samples || !photographs->usable || !photographs->average || !sum.light || !sum.brightness)
+    if (!photographs->usable || !photographs->average || !sum.light || !sum.brightness)
         code = weft_fail_memory(error, "the average of a viewpoint", pixels * 20);
     if (code == WEFT_OK)
-        code = read_all(photographs, count * values * sizeof(uint16_t) <= memory_bytes, &sum, fault, error);
+        code = read_all(photographs, &sum, fault, error);
     if (code == WEFT_OK) {
         finish_average(sight, &sum, photographs->average);
         for (int i = 0; i < viewpoint->count; i++)
@@ -150,23 +133,16 @@ weft_code weft_viewpoint_photographs_read(const weft_sensor_defects *faults, con
 
 void weft_viewpoint_photographs_free(weft_viewpoint_photographs *photographs)
 {
-    for (int i = 0; photographs->samples && i < photographs->count; i++)
-        free(photographs->samples[i]);
-    free(photographs->samples);
     free(photographs->usable);
     free(photographs->average);
     *photographs = (weft_viewpoint_photographs){0};
 }
 
-const uint16_t *weft_viewpoint_photographs_samples(const weft_viewpoint_photographs *photographs, int index,
-                                                   uint16_t *scratch)
+bool weft_viewpoint_photographs_samples(const weft_viewpoint_photographs *photographs, int index, uint16_t *samples)
 {
     const weft_session *session = &photographs->faults->seen;
     int shot = photographs->shot[index];
     char path[PATH_MAX];
-    if (photographs->samples[index])
-        return photographs->samples[index];
     weft_session_photograph_path(session, shot, path, sizeof path);
-    weft_code code = weft_sensor_read(photographs->faults, path, session->record[shot].exposure_s, scratch, NULL);
-    return code == WEFT_OK ? scratch : NULL;
+    return weft_sensor_read(photographs->faults, path, session->record[shot].exposure_s, samples, NULL) == WEFT_OK;
 }

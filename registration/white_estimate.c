@@ -1,4 +1,4 @@
-#include "registration/white_estimate.h"
+#include "registration/steps.h"
 
 #include "base/numeric/statistics.h"
 

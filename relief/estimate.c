@@ -1,6 +1,5 @@
 #include "relief/height_map.h"
 #include "relief/held_out.h"
-#include "relief/reach.h"
 #include "relief/relief.h"
 #include "relief/sweep.h"
 

@@ -33,4 +33,17 @@ weft_code weft_height_map_halve(const weft_height_map *map, weft_height_map *hal
 weft_code weft_height_range_find(const weft_features *features, const int *view, int view_count, double *low,
                                  double *high, weft_error *error);
 
+/* ---- How far heights are looked for ---- */
+
+/* The least distance, mm, after which the cloth repeats along one of its axes, from the autocorrelation of the view
+ * that looks down most steeply (base/numeric/repeat.h). Infinity where it repeats along neither. Errors: WEFT_SYSTEM.
+ */
+weft_code weft_relief_period(const weft_features *features, double *period_mm, weft_error *error);
+
+/* Heights lie within reach_mm above and below the plane of the texels. A stitch is hardly taller than it is wide, so
+ * 1.25 times its width is enough: the period of the cloth, or all of it where it is one tile. Further off, threads
+ * agree with their neighbours by chance. Where nothing repeats, the reach is a quarter of the shorter side, but no more
+ * than 24 texels: parallax is told as far as that. Errors: WEFT_SYSTEM. */
+weft_code weft_relief_reach(const weft_features *features, double *reach_mm, weft_error *error);
+
 #endif

@@ -1,6 +1,7 @@
 #include "relief/page.h"
 
 #include "base/text/chart.h"
+#include "base/text/json_text.h"
 #include "btf/direction/direction.h"
 
 #include <math.h>
@@ -115,22 +116,6 @@ static weft_code write_chart(weft_page *page, const weft_relief_report *report, 
     return WEFT_OK;
 }
 
-static void write_views(weft_page *page, const weft_relief_report *report)
-{
-    fputs("<table class=\"long\">\n", page->html);
-    weft_page_columns(page, "view|theta|phi|flat|plane|heights");
-    for (int i = 0; i < report->compared_count; i++) {
-        const weft_relief_view *view = &report->view[i];
-        double phi = weft_deg_of_rad(atan2((double)view->direction.y, (double)view->direction.x));
-        fprintf(page->html,
-                "<tr%s><td>%d</td><td>%.1f\u00b0</td><td>%.1f\u00b0</td><td>%.1f %%</td><td>%.1f %%</td><td>%.1f "
-                "%%</td></tr>\n",
-                view->error.heights > view->error.plane ? " class=\"weak\"" : "", view->number, angle_of(view), phi,
-                100 * view->error.flat, 100 * view->error.plane, 100 * view->error.heights);
-    }
-    fputs("</table>\n", page->html);
-}
-
 static void write_levels(weft_page *page, const weft_relief_report *report)
 {
     fputs("<h2>Error by mip level</h2>\n<table>\n", page->html);
@@ -175,7 +160,6 @@ static weft_code write_page(weft_page *page, const weft_relief_report *report, w
     WEFT_TRY(write_maps(page, report, error));
     write_levels(page, report);
     WEFT_TRY(write_chart(page, report, error));
-    write_views(page, report);
     return WEFT_OK;
 }
 
@@ -190,5 +174,37 @@ weft_code weft_relief_page_write(const char *folder, const char *name, const wef
     if (code == WEFT_OK)
         return weft_page_finish(&page, error);
     weft_page_abandon(&page);
+    return code;
+}
+
+/* ---- In the dataset ---- */
+
+json_t *weft_relief_report_pack(const weft_relief_report *report)
+{
+    static const char *const name[] = {"nothing", "plane", "relief"};
+    json_t *levels = json_array();
+    for (int i = 0; i < report->level_count; i++)
+        weft_json_append(&levels, json_pack("[f, f, f]", report->level_error[i].flat, report->level_error[i].plane,
+                                            report->level_error[i].heights));
+    return json_pack("{s:s, s:f, s:[f, f], s:b, s:i, s:{s:f, s:f, s:f}, s:o}", "verdict", name[report->verdict],
+                     "plane_mm", report->plane_mm, "range_mm", report->low_mm, report->high_mm, "repeats",
+                     report->repeats, "levels_used", report->levels_used, "left_out_error", "flat", report->error.flat,
+                     "plane", report->error.plane, "relief", report->error.heights, "level_error", levels);
+}
+
+weft_code weft_relief_keep(const char *path, const char *output, const weft_relief_report *report, weft_error *error)
+{
+    const weft_dataset_heights heights = {report->width, report->height, report->levels_used, report->height_mm_of};
+    double plane_mm = report->verdict == WEFT_RELIEF_NOTHING ? 0 : report->plane_mm;
+    json_t *object = weft_relief_report_pack(report);
+    if (report->moved_mm != 0)
+        weft_json_put(&object, "moved_mm", json_real(report->moved_mm));
+    char *made = object ? json_dumps(object, JSON_COMPACT) : NULL;
+    json_decref(object);
+    if (!made)
+        return weft_fail_memory(error, "report", 0);
+    weft_code code = weft_dataset_put_relief(path, output, plane_mm,
+                                             report->verdict == WEFT_RELIEF_HEIGHTS ? &heights : NULL, made, error);
+    free(made);
     return code;
 }

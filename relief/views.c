@@ -1,4 +1,4 @@
-#include "relief/views.h"
+#include "relief/features.h"
 
 #include "base/integers.h"
 

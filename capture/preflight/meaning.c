@@ -5,7 +5,7 @@
 const weft_preflight_meaning weft_preflight_meaning_of[WEFT_CHECK_KINDS] = {
     [WEFT_CHECK_TARGET] = {"target", "of 8 markers found", 4, true, 1, true,
                            "uncover the target, and see that all of it is in the picture"},
-    [WEFT_CHECK_PLACE] = {"place", "mm from where the rig promises the target", 5, false, 1, true,
+    [WEFT_CHECK_PLACE] = {"place", "mm from where the rig predicts the target", 5, false, 1, true,
                           "home the axes, and measure distances and zero_deg of the rig file anew"},
     [WEFT_CHECK_FOCUS] = {"focus, frontal", "pixels wide, the image of a point", 1.5, false, 1, true,
                           "focus on the sample, and fix the ring"},

@@ -144,8 +144,8 @@ static weft_code find_plate(const weft_session *session, const weft_sight *sight
     float *grey = malloc(bytes);
     if (!grey)
         return weft_fail_memory(error, "photograph", bytes);
-    weft_pose promised = weft_session_pose(session, view);
-    weft_homography homography = weft_homography_of_pose(&session->camera, &promised);
+    weft_pose predicted = weft_session_pose(session, view);
+    weft_homography homography = weft_homography_of_pose(&session->camera, &predicted);
     grey_of(session, sight, samples, grey);
     weft_code code = weft_pose_find(sight, &session->target, grey, &homography, (weft_point_spread){0, 0}, &pose_limits,
                                     pose, error);

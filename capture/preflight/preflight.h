@@ -8,7 +8,7 @@
 
 typedef enum weft_preflight_kind {
     WEFT_CHECK_TARGET,        /* fewest markers of the target found; the drawing found in all poses */
-    WEFT_CHECK_PLACE,         /* largest shift of the target against the rig's promise, mm */
+    WEFT_CHECK_PLACE,         /* largest shift of the target against the predicted pose, mm */
     WEFT_CHECK_FOCUS,         /* frontal: standard deviation of the point spread in the opening, pixels */
     WEFT_CHECK_FOCUS_GRAZING, /* the same where the view is lowest, at the corner of the opening where it is widest */
     WEFT_CHECK_CLIPPING,      /* largest share of the opening at full scale */

@@ -1,7 +1,6 @@
 #include "cli/command/heights.h"
 
 #include "base/text/json_text.h"
-#include "relief/keep.h"
 #include "relief/page.h"
 
 #include <stdlib.h>
@@ -13,11 +12,7 @@ void weft_heights_say(const weft_common_options *common, const weft_relief_repor
     weft_command_say(common, "%s", reason);
     json_t *object = weft_relief_report_pack(report);
     weft_json_put(&object, "event", json_string("relief"));
-    char *event = object ? json_dumps(object, JSON_COMPACT) : NULL;
-    json_decref(object);
-    if (event)
-        weft_command_event(common, event);
-    free(event);
+    weft_command_event_of(common, object, NULL);
 }
 
 weft_code weft_heights_estimate(const weft_common_options *common, const char *path, weft_relief_report *report,

@@ -22,12 +22,7 @@ static void say(const weft_terminal_operator *at, const char *text)
         fflush(stderr);
         return;
     }
-    json_t *event = json_pack("{s:s, s:s}", "event", "ask", "text", text);
-    char *line = event ? json_dumps(event, JSON_COMPACT) : NULL;
-    if (line)
-        weft_command_event(at->common, line);
-    free(line);
-    json_decref(event);
+    weft_command_event_of(at->common, json_pack("{s:s, s:s}", "event", "ask", "text", text), NULL);
 }
 
 /* Waits in short steps, to hear a stop. */

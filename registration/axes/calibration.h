@@ -12,8 +12,8 @@ typedef struct weft_axes_report {
     weft_axes_fit fit; /* of all shots that are used */
     weft_poses_file file;
     int used;
-    weft_lines told;         /* what was found of each axis, in words */
-    weft_lines undetermined; /* what was held as specified, and why */
+    weft_lines found;        /* of each axis, for the user */
+    weft_lines undetermined; /* what stays as specified, and why */
 } weft_axes_report;
 
 /* Adjusts home and lines, then what else makes the shots more probable: scale, unevenness and wobble of each joint,

@@ -1,5 +1,7 @@
 #include "registration/axes/expectation.h"
 
+#include "base/numeric/statistics.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,55 +73,32 @@ typedef struct variance {
     double mm2, rad2;
 } variance;
 
-/* Of the shared unknowns, through their covariance. */
-static variance of_model(const weft_axes_fit *fit, const weft_rig_poses *nominal, double opening_mm,
-                         const weft_turns *turns)
+/* How what is shown changes with unknown k of the model, or, from `unknowns` on, with the shot's own place. */
+static shown slope_of(const weft_axes_fit *fit, const weft_rig_poses *nominal, double opening_mm,
+                      const weft_turns *turns, int k)
 {
-    shown slopes[WEFT_UNKNOWNS];
-    double unknown[WEFT_UNKNOWNS];
     weft_pose taken = weft_rig_poses_at(&fit->poses, turns);
-    variance v = {0, 0};
-    memcpy(unknown, fit->unknown, sizeof unknown);
-    for (int k = 0; k < fit->unknowns; k++) {
-        shown side[2];
-        for (int s = 0; s < 2; s++) {
-            unknown[k] = fit->unknown[k] + (s ? -step : step);
-            weft_rig_poses other = weft_rig_poses_with(nominal, &fit->terms, unknown);
-            weft_pose pose = weft_rig_poses_at(&other, turns);
-            side[s] = show(&fit->poses.camera, &taken, &other.camera, &pose, opening_mm);
-        }
-        unknown[k] = fit->unknown[k];
-        slopes[k] = slope(&side[0], &side[1], 2 * step);
+    shown side[2];
+    for (int s = 0; s < 2; s++) {
+        double unknown[WEFT_UNKNOWNS], moved = s ? -step : step;
+        weft_motion motion = {{0, 0, 0}, {0, 0, 0}};
+        memcpy(unknown, fit->unknown, sizeof unknown);
+        if (k < fit->unknowns)
+            unknown[k] += moved;
+        else
+            (k < fit->unknowns + 3 ? motion.rotation : motion.translation)[(k - fit->unknowns) % 3] = moved;
+        weft_rig_poses other = k < fit->unknowns ? weft_rig_poses_with(nominal, &fit->terms, unknown) : fit->poses;
+        weft_pose pose = weft_rig_poses_at(&other, turns), own = weft_pose_of_motion(&motion);
+        pose = weft_pose_after(&pose, &own);
+        side[s] = show(&fit->poses.camera, &taken, &other.camera, &pose, opening_mm);
     }
-    for (int i = 0; i < fit->unknowns; i++) {
-        for (int j = 0; j < fit->unknowns; j++) {
-            double covariance = fit->covariance[i * fit->unknowns + j];
-            v.mm2 += covariance * shift_product(&slopes[i], &slopes[j]);
-            v.rad2 += covariance * turn_product(&slopes[i], &slopes[j]);
-        }
-    }
-    return v;
+    return slope(&side[0], &side[1], 2 * step);
 }
 
-/* Of a shot's own place. */
-static variance of_scatter(const weft_axes_fit *fit, double opening_mm, const weft_turns *turns)
+static void add(double covariance, const shown *a, const shown *b, variance *v)
 {
-    const double deviation[2] = {fit->scatter.rotation_rad, fit->scatter.translation_mm};
-    weft_pose taken = weft_rig_poses_at(&fit->poses, turns);
-    variance v = {0, 0};
-    for (int k = 0; k < WEFT_OWN_UNKNOWNS; k++) {
-        shown side[2];
-        for (int s = 0; s < 2; s++) {
-            weft_motion motion = {{0, 0, 0}, {0, 0, 0}};
-            (k < 3 ? motion.rotation : motion.translation)[k % 3] = s ? -step : step;
-            weft_pose own = weft_pose_of_motion(&motion), pose = weft_pose_after(&taken, &own);
-            side[s] = show(&fit->poses.camera, &taken, &fit->poses.camera, &pose, opening_mm);
-        }
-        shown by = slope(&side[0], &side[1], 2 * step);
-        v.mm2 += deviation[k / 3] * deviation[k / 3] * shift_product(&by, &by);
-        v.rad2 += deviation[k / 3] * deviation[k / 3] * turn_product(&by, &by);
-    }
-    return v;
+    v->mm2 += covariance * shift_product(a, b);
+    v->rad2 += covariance * turn_product(a, b);
 }
 
 /* A pose that shows the opening from behind or from the side, if only for some unknowns, says nothing. */
@@ -132,7 +111,16 @@ weft_expected_pose weft_axes_expect_pose(const weft_axes_fit *fit, const weft_ri
                                          int texels, const weft_turns *turns)
 {
     double per_mm = texels / opening_mm;
-    variance model = of_model(fit, nominal, opening_mm, turns), scatter = of_scatter(fit, opening_mm, turns);
+    const double own[2] = {fit->scatter.rotation_rad, fit->scatter.translation_mm};
+    shown slopes[WEFT_UNKNOWNS + WEFT_OWN_UNKNOWNS];
+    variance model = {0, 0}, scatter = {0, 0};
+    for (int k = 0; k < fit->unknowns + WEFT_OWN_UNKNOWNS; k++)
+        slopes[k] = slope_of(fit, nominal, opening_mm, turns, k);
+    for (int i = 0; i < fit->unknowns; i++)
+        for (int j = 0; j < fit->unknowns; j++)
+            add(fit->covariance[i * fit->unknowns + j], &slopes[i], &slopes[j], &model);
+    for (int k = 0; k < WEFT_OWN_UNKNOWNS; k++)
+        add(own[k / 3] * own[k / 3], &slopes[fit->unknowns + k], &slopes[fit->unknowns + k], &scatter);
     return (weft_expected_pose){*turns, deviation(model.mm2) * per_mm, deviation(scatter.mm2) * per_mm,
                                 deviation(model.mm2 + scatter.mm2) * per_mm, deviation(model.rad2 + scatter.rad2)};
 }
@@ -183,12 +171,6 @@ bool weft_axes_turns_like(const weft_axes_shot *shot, int count, weft_angles vie
     return same_theta && (fabs(phi_off) <= same_deg || theta_deg < same_deg);
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 weft_code weft_axes_expect(const weft_axes_fit *fit, const weft_rig_poses *nominal, double opening_mm, int texels,
                            const weft_turns *turns, int count, weft_expectation *expectation, weft_error *error)
 {
@@ -203,8 +185,7 @@ weft_code weft_axes_expect(const weft_axes_fit *fit, const weft_rig_poses *nomin
             expectation->worst = one;
         expectation->direction_rad = fmax(expectation->direction_rad, one.direction_rad);
     }
-    qsort(each, (size_t)count, sizeof *each, ascending);
-    expectation->median_texels = each[count / 2];
+    expectation->median_texels = weft_quantile(each, (size_t)count, 0.5);
     free(each);
     return WEFT_OK;
 }

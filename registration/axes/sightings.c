@@ -42,8 +42,8 @@ static weft_code look(const work *w, const weft_viewpoint *viewpoint, const floa
 {
     /* The target may be anywhere in the photograph: that is what the axes are calibrated for. */
     const weft_pose_limits limits = {2 * weft_target_radius_mm(&w->session->target), least_correlation};
-    weft_pose promised = weft_session_pose(w->session, w->survey.view[viewpoint->view]);
-    weft_homography homography = weft_homography_of_pose(&w->session->camera, &promised);
+    weft_pose predicted = weft_session_pose(w->session, w->survey.view[viewpoint->view]);
+    weft_homography homography = weft_homography_of_pose(&w->session->camera, &predicted);
     weft_view_pose pose;
     WEFT_TRY(weft_pose_find(&w->sight, &w->session->target, photograph, &homography, (weft_point_spread){0, 0}, &limits,
                             &pose, error));
@@ -60,7 +60,7 @@ static weft_code read_viewpoint(const work *w, const weft_viewpoint *viewpoint, 
     weft_viewpoint_photographs photographs;
     shot->turns = w->session->turns[viewpoint->shot[0]];
     WEFT_TRY(name_shot(w, viewpoint, shot, error));
-    WEFT_TRY(weft_viewpoint_photographs_read(&w->faults, &w->sight, viewpoint, 0, w->fault, &photographs, error));
+    WEFT_TRY(weft_viewpoint_photographs_read(&w->faults, &w->sight, viewpoint, w->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
         code = look(w, viewpoint, photographs.average, shot, error);

@@ -1,9 +1,9 @@
 #include "registration/colour/fit.h"
 
-#include "base/numeric/cholesky.h"
 #include "base/numeric/statistics.h"
 #include "registration/colour/difference.h"
 #include "registration/colour/grey_tone.h"
+#include "registration/pose/normal_equations.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,11 +13,6 @@ enum { ROUNDS = 20, LIGHT_GREYS = 4, MOST_UNKNOWNS = 3 * (WEFT_COLOUR_ROOT_TERMS
 
 /* CIEDE2000 from which a patch counts less. */
 static const double usual_difference = 2;
-
-typedef struct equations {
-    int unknowns;
-    double matrix[MOST_UNKNOWNS * MOST_UNKNOWNS], right[MOST_UNKNOWNS];
-} equations;
 
 /* ---- Light and white ---- */
 
@@ -115,15 +110,8 @@ static void derivatives(const weft_colour_fit *fit, const double term[WEFT_COLOU
         row[3 * free_terms + 1 + d] = -colour[channel] * place[d];
 }
 
-static void add_equation(const double row[MOST_UNKNOWNS], double weight, equations *e)
-{
-    for (int i = 0; i < e->unknowns; i++)
-        for (int j = 0; j <= i; j++)
-            e->matrix[i * e->unknowns + j] += weight * row[i] * row[j];
-}
-
 static void add_patch(const weft_colour_fit *fit, const double light[3], const double wanted[3], int patch,
-                      double weight, equations *e)
+                      double weight, weft_normal_equations *equations)
 {
     double term[WEFT_COLOUR_ROOT_TERMS], metric[3][3], row[3][MOST_UNKNOWNS];
     terms_of(fit, light, patch, term);
@@ -131,49 +119,49 @@ static void add_patch(const weft_colour_fit *fit, const double light[3], const d
     for (int c = 0; c < 3; c++)
         derivatives(fit, term, wanted, patch, c, row[c]);
     for (int m = 0; m < 3; m++) {
-        double whole[MOST_UNKNOWNS], right = 0;
+        double whole[WEFT_UNKNOWNS_LIMIT] = {0}, right = 0;
         for (int c = 0; c < 3; c++)
             right += metric[m][c] * wanted[c];
-        for (int i = 0; i < e->unknowns; i++)
+        for (int i = 0; i < MOST_UNKNOWNS; i++)
             whole[i] = metric[m][0] * row[0][i] + metric[m][1] * row[1][i] + metric[m][2] * row[2][i];
-        for (int i = 0; i < e->unknowns; i++)
-            e->right[i] += weight * whole[i] * right;
-        add_equation(whole, weight, e);
+        weft_normal_equations_add(equations, whole, right, weight);
     }
 }
 
 /* The sum of the rows is exposure that the greys have missed: it goes into the white. */
-static void adopt(const equations *e, weft_colour_fit *fit)
+static void adopt(const double solution[MOST_UNKNOWNS], weft_colour_fit *fit)
 {
     int free_terms = fit->terms - 1;
-    double sum = e->right[3 * free_terms];
+    double sum = solution[3 * free_terms];
     for (int c = 0; c < 3; c++) {
         fit->matrix[c][free_terms] = 1;
         for (int k = 0; k < free_terms; k++) {
-            fit->matrix[c][k] = e->right[c * free_terms + k] / sum;
+            fit->matrix[c][k] = solution[c * free_terms + k] / sum;
             fit->matrix[c][free_terms] -= fit->matrix[c][k];
         }
         fit->white[c] /= sum;
     }
     for (int d = 0; d < 2; d++)
-        fit->slope[d] += e->right[3 * free_terms + 1 + d];
+        fit->slope[d] += solution[3 * free_terms + 1 + d];
 }
 
 static bool improve(const weft_chart_colours *light, const weft_chart_colours *reference,
                     const bool used[WEFT_CHART_PATCHES], bool is_first, weft_colour_fit *fit)
 {
-    equations e = {.unknowns = 3 * (fit->terms - 1) + 3};
+    weft_normal_equations equations = {0};
+    double solution[MOST_UNKNOWNS];
+    int unknowns = 3 * (fit->terms - 1) + 3;
     for (int i = 0; i < WEFT_CHART_PATCHES; i++) {
         double off = is_first ? 0 : fit->difference[i] / usual_difference;
         if (used[i])
-            add_patch(fit, light->rgb[i], reference->rgb[i], i, 1 / (1 + off * off), &e);
+            add_patch(fit, light->rgb[i], reference->rgb[i], i, 1 / (1 + off * off), &equations);
     }
-    if (!weft_cholesky_factor(e.unknowns, e.unknowns, e.matrix))
+    if (!weft_normal_equations_factor(&equations, unknowns))
         return false;
-    weft_cholesky_solve(e.unknowns, e.unknowns, e.matrix, e.right);
-    if (!(e.right[e.unknowns - 3] > 0))
+    weft_normal_equations_solve(&equations, unknowns, solution);
+    if (!(solution[unknowns - 3] > 0))
         return false;
-    adopt(&e, fit);
+    adopt(solution, fit);
     predict(light, reference, fit);
     return true;
 }
@@ -193,7 +181,7 @@ weft_code weft_colour_fit_run(const weft_chart_light *chart, int terms, int but,
     for (int round = 0; round < ROUNDS; round++) {
         if (!improve(&light, &chart->reference, used, round == 0, fit))
             return weft_fail(error, WEFT_BAD_INPUT,
-                             "'%s': the patches of the chart tell no colour matrix (singular equations)", path);
+                             "'%s': the patches of the chart determine no colour matrix (singular equations)", path);
     }
     return WEFT_OK;
 }

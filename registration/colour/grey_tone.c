@@ -1,7 +1,7 @@
 #include "registration/colour/grey_tone.h"
 
-#include "base/numeric/cholesky.h"
 #include "base/picture/colour.h"
+#include "registration/pose/normal_equations.h"
 
 #include <math.h>
 
@@ -40,37 +40,33 @@ double weft_grey_tone_light(const weft_grey_tone *tone, double decoded)
     return decoded * exp(exponent(tone, decoded));
 }
 
-/* The equation of a grey in a channel: gain[c] - sum of the terms = log decoded - log reference. */
-static void add_equation(int channel, double decoded, double right, double *matrix, double vector[UNKNOWNS])
+/* A grey in a channel: gain[c] - sum of the terms = log decoded - log reference. */
+static void add_grey(int channel, double decoded, double reference, weft_normal_equations *equations)
 {
-    double row[UNKNOWNS] = {0}, x = 2 * (double)weft_srgb_of_linear((float)decoded) - 1, power = x;
+    double row[WEFT_UNKNOWNS_LIMIT] = {0}, value = fmax(decoded, darkest);
+    double x = 2 * (double)weft_srgb_of_linear((float)value) - 1, power = x;
     row[channel] = 1;
     for (int k = 0; k < WEFT_GREY_TONE_TERMS; k++, power *= x)
         row[3 + k] = -power;
-    for (int i = 0; i < UNKNOWNS; i++) {
-        vector[i] += row[i] * right;
-        for (int j = 0; j < UNKNOWNS; j++)
-            matrix[i * UNKNOWNS + j] += row[i] * row[j];
-    }
+    weft_normal_equations_add(equations, row, log(value / reference), 1);
 }
 
 bool weft_grey_tone_find(const weft_chart_colours *decoded, const weft_chart_colours *reference,
                          const bool used[WEFT_CHART_PATCHES], weft_grey_tone *tone)
 {
-    double matrix[UNKNOWNS * UNKNOWNS] = {0}, vector[UNKNOWNS] = {0};
+    weft_normal_equations equations = {0};
+    double found[UNKNOWNS];
     int greys = 0;
     *tone = (weft_grey_tone){0};
     for (int i = WEFT_CHART_FIRST_GREY; i < WEFT_CHART_PATCHES; i++) {
         greys += used[i];
-        for (int c = 0; used[i] && c < 3; c++) {
-            double value = fmax(decoded->rgb[i][c], darkest);
-            add_equation(c, value, log(value / reference->rgb[i][c]), matrix, vector);
-        }
+        for (int c = 0; used[i] && c < 3; c++)
+            add_grey(c, decoded->rgb[i][c], reference->rgb[i][c], &equations);
     }
-    if (greys < WEFT_GREY_TONE_FEWEST || !weft_cholesky_factor(UNKNOWNS, UNKNOWNS, matrix))
+    if (greys < WEFT_GREY_TONE_FEWEST || !weft_normal_equations_factor(&equations, UNKNOWNS))
         return false;
-    weft_cholesky_solve(UNKNOWNS, UNKNOWNS, matrix, vector);
+    weft_normal_equations_solve(&equations, UNKNOWNS, found);
     for (int k = 0; k < WEFT_GREY_TONE_TERMS; k++)
-        tone->term[k] = vector[3 + k];
+        tone->term[k] = found[3 + k];
     return true;
 }

@@ -5,7 +5,22 @@
 #include "base/picture/image.h"
 #include "registration/colour/chart.h"
 #include "registration/colour/chart_library.h"
-#include "registration/colour/shot.h"
+
+#include <stdbool.h>
+
+/* ---- The photograph of a chart: its values in proportion to light ---- */
+
+typedef struct weft_chart_shot {
+    weft_image light; /* in proportion to light, 1 at full scale; of a file with a tone curve, as if that were sRGB's */
+    bool has_tone;    /* an integer file that was not said to be linear: its tone curve is still to be found */
+    float clipped_at; /* value of `light` from which one is clipped */
+    bool is_scaled;   /* 1 is what the sensor holds; floats may have any scale */
+} weft_chart_shot;
+
+/* Reads a photograph of any kind that Weft reads, or the first photograph taken of a session, above black and without
+ * the vignetting of the session's camera. `linear`: integer files hold linear values. The caller frees with
+ * weft_image_free(&shot->light). Errors: WEFT_BAD_INPUT naming the file; WEFT_SYSTEM. */
+weft_code weft_chart_shot_read(const char *path, bool linear, weft_chart_shot *shot, weft_error *error);
 
 typedef struct weft_chart_patch {
     double light[3]; /* mean of the middle of the patch, as in the shot */
@@ -45,11 +60,5 @@ weft_code weft_chart_grid_of_corners(weft_chart_layout layout, const weft_chart_
  * where the grid is then. Errors: WEFT_SYSTEM. */
 weft_code weft_chart_grid_refine(const uint8_t *rgb, int width, int height, weft_chart_grid *grid, int *seen,
                                  weft_error *error);
-
-/* ---- How well colours are those of a chart, before anything is known of tone, exposure and lamp ---- */
-
-/* The share of the variance of `reference` that the 3 x 3 matrix of least squares explains by `light`: 1 where it
- * explains all. 0 where it explains nothing, or the light is of fewer than three colours. Pure. */
-double weft_plain_matrix_agreement(const weft_chart_colours *light, const weft_chart_colours *reference);
 
 #endif

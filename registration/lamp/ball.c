@@ -1,4 +1,4 @@
-#include "registration/lamp/ball.h"
+#include "registration/lamp/evidence.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -65,18 +65,28 @@ static weft_vec3 ray_of(const weft_camera *camera, const weft_pose *pose, double
                                   r[0][2] * a + r[1][2] * b + r[2][2]));
 }
 
+bool weft_ball_mirror(weft_vec3 eye, weft_vec3 ray, weft_vec3 centre, double radius_mm, weft_vec3 *from,
+                      weft_vec3 *mirrored)
+{
+    weft_vec3 offset = weft_subtract(eye, centre);
+    double half = weft_dot(offset, ray), root = half * half - weft_dot(offset, offset) + radius_mm * radius_mm;
+    if (!(root >= 0))
+        return false;
+    *from = weft_add(eye, weft_scale(ray, -half - sqrt(root)));
+    weft_vec3 normal = weft_scale(weft_subtract(*from, centre), 1 / radius_mm);
+    *mirrored = weft_subtract(ray, weft_scale(normal, 2 * weft_dot(ray, normal)));
+    return true;
+}
+
 /* How the ray of a pixel meets the ball: the cosine of its incidence, and how much the mirrored ray rises. False where
  * it passes. */
 static bool meet_ball(const sight *s, double x, double y, double *cosine, double *rise)
 {
-    weft_vec3 ray = ray_of(s->camera, s->pose, x, y), offset = weft_subtract(s->eye, s->centre);
-    double half = weft_dot(offset, ray);
-    double root = half * half - weft_dot(offset, offset) + s->radius_mm * s->radius_mm;
-    if (!(root > 0))
+    weft_vec3 ray = ray_of(s->camera, s->pose, x, y), from, mirrored;
+    if (!weft_ball_mirror(s->eye, ray, s->centre, s->radius_mm, &from, &mirrored))
         return false;
-    weft_vec3 normal = weft_scale(weft_add(offset, weft_scale(ray, -half - sqrt(root))), 1 / s->radius_mm);
-    *cosine = -weft_dot(ray, normal);
-    *rise = ray.z + 2 * *cosine * normal.z;
+    *cosine = weft_dot(ray, weft_subtract(s->centre, from)) / s->radius_mm;
+    *rise = mirrored.z;
     return true;
 }
 

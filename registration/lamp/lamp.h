@@ -4,15 +4,30 @@
 #ifndef WEFT_REGISTRATION_LAMP_LAMP_H
 #define WEFT_REGISTRATION_LAMP_LAMP_H
 
-#include "registration/lamp/ball.h"
-#include "registration/lamp/flash.h"
+#include "btf/session/camera.h"
+#include "registration/lamp/evidence.h"
 #include "registration/lamp/listed.h"
-#include "registration/lamp/paper.h"
-#include "registration/lamp/pin.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ---- A lamp that is fixed to the camera ---- */
+
+/* Coefficients of u, v, u^2, u v, v^2. */
+enum { WEFT_BEAM_TERMS = 5 };
+
+/* In the frame of the camera: x right, y down, z forward. */
+typedef struct weft_flash {
+    double place_mm[3];
+    double beam[WEFT_BEAM_TERMS];
+} weft_flash;
+
+/* Logarithm of what the flash sends towards the place (x, y) of the plate, over what it sends straight ahead:
+ *     beam[0] u + beam[1] v + beam[2] u^2 + beam[3] u v + beam[4] v^2,
+ * u and v being the tangents, right and down, of the direction in which the flash sees the place. To second order
+ * cos^n has beam[2] = beam[4] = -n / 2. 0 without a beam. Pure. */
+double weft_flash_log_beam(const weft_flash *flash, const weft_pose *pose, double x, double y);
 
 /* Corrections of the logarithm of light: coefficients of powers of the encoded value, which is stretched to -1..1. */
 enum { WEFT_TONE_TERMS = 5 };
@@ -48,12 +63,10 @@ typedef struct weft_lamp_problem {
 } weft_lamp_problem;
 
 typedef struct weft_lamp_solution {
-    weft_lamp_place *place;       /* [count]; in: where the search starts */
-    double tone[WEFT_TONE_TERMS]; /* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)) */
-    double vignetting[3];         /* as weft_camera has it */
-    double ink;                   /* reflectance of ink over that of paper */
-    double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */
-    double pin_shift_mm[3];                          /* of its head */
+    weft_lamp_place *place;         /* [count]; in: where the search starts */
+    double tone[WEFT_TONE_TERMS];   /* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)) */
+    double vignetting[3];           /* as weft_camera has it */
+    double ink;                     /* reflectance of ink over that of paper */
     double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
     double dark_error;              /* standard error of the tone curve, relative: of light of a tenth of the paper's; 0
                                        where the curve is known */

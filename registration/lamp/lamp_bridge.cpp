@@ -115,6 +115,23 @@ class lamp_search : lamp_terms
         const double beam = input->flash ? mount_of(i).log_beam(lamp_of(i), shared.beam, 0, 0) : 0;
         for (int c = 0; c < 3; c++)
             place->level[c] = std::exp(own[(size_t)i].level[c] + beam) / input->target->paper_reflectance;
+        place->residual = paper_residual_of(i);
+    }
+
+    /* How far bare paper lies from what the lamp explains: 1.4826 times the median deviation of the logarithm of green
+     * light from its median, which is the standard deviation where most of it is free of shadows and stains. */
+    double paper_residual_of(int i)
+    {
+        std::vector<double> off;
+        double r[3];
+        for (const auto &[residual, photograph] : papers)
+            if (photograph == i && (*residual)(lamp_of(i), own[(size_t)i].level, shared.tone, shared.vignetting,
+                                               &shared.ink, shared.beam, r))
+                off.push_back(r[1] / residual->weight);
+        const double middle = median(off);
+        for (double &value : off)
+            value = std::fabs(value - middle);
+        return 1.4826 * median(off);
     }
 
     static double median(std::vector<double> &value)
@@ -148,11 +165,6 @@ class lamp_search : lamp_terms
         output->vignetting[1] = shared.vignetting[1] / (corner * corner);
         output->vignetting[2] = 0;
         output->ink = std::exp(shared.ink);
-        for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++)
-            for (int axis = 0; axis < 2; axis++)
-                output->ball_shift_mm[ball][axis] = shared.shift[ball][axis] * unit_mm;
-        for (int axis = 0; axis < 3; axis++)
-            output->pin_shift_mm[axis] = shared.pin_shift[axis] * unit_mm;
         for (int axis = 0; axis < 3; axis++)
             output->flash.place_mm[axis] = shared.flash[axis] * unit_mm;
         std::copy_n(shared.beam, WEFT_BEAM_TERMS, output->flash.beam);

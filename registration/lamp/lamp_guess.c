@@ -1,6 +1,5 @@
-#include "registration/lamp/lamp.h"
-
 #include "base/numeric/statistics.h"
+#include "registration/lamp/lamp.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,14 +24,7 @@ static bool reflected_ray(const weft_lamp_problem *problem, const weft_lamp_evid
         return false;
     weft_target_ball(problem->target, ball, place);
     weft_vec3 centre = weft_vec3_of(place[0], place[1], radius), eye = weft_pose_camera_position(&evidence->pose);
-    weft_vec3 ray = evidence->highlight[ball].ray, offset = weft_subtract(eye, centre);
-    double half = weft_dot(offset, ray), root = half * half - weft_dot(offset, offset) + radius * radius;
-    if (!(root >= 0))
-        return false;
-    *from = weft_add(eye, weft_scale(ray, -half - sqrt(root)));
-    weft_vec3 normal = weft_scale(weft_subtract(*from, centre), 1 / radius);
-    *along = weft_subtract(ray, weft_scale(normal, 2 * weft_dot(ray, normal)));
-    return true;
+    return weft_ball_mirror(eye, evidence->highlight[ball].ray, centre, radius, from, along);
 }
 
 /* Midway between the two rays where they come closest; false where they never meet in front of the balls. */
@@ -158,4 +150,16 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
             place->source = is_listed ? WEFT_LAMP_LIST : WEFT_LAMP_PAPER;
         }
     }
+}
+
+/* ---- The beam of a flash ---- */
+
+double weft_flash_log_beam(const weft_flash *flash, const weft_pose *pose, double x, double y)
+{
+    const double *along[3] = {&pose->translation.x, &pose->translation.y, &pose->translation.z}, *beam = flash->beam;
+    double to[3];
+    for (int axis = 0; axis < 3; axis++)
+        to[axis] = pose->rotation[axis][0] * x + pose->rotation[axis][1] * y + *along[axis] - flash->place_mm[axis];
+    double u = to[0] / to[2], v = to[1] / to[2];
+    return u * (beam[0] + beam[2] * u + beam[3] * v) + v * (beam[1] + beam[4] * v);
 }

@@ -29,6 +29,7 @@ constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_de
  * lens, cos^4; a beam of cos^2 may be turned aside by six degrees. */
 constexpr double beam_mean[WEFT_BEAM_TERMS] = {0, 0, -1, 0, -1}, beam_deviation[WEFT_BEAM_TERMS] = {0.2, 0.2, 1, 1, 1};
 
+/* Tone curves are smooth: the higher a power, the less of it. */
 constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
 
 /* Of two exposures: shutters err, and not all cameras round as others do. Of the light of a place in both:
@@ -215,49 +216,6 @@ struct pair_residual {
                 value += tone[k] * power[c][k];
             residual[c] = weight[c] * value;
         }
-        return true;
-    }
-};
-
-/* What the camera wrote of the ratio of two exposures. The white balance may change, so it holds for green. */
-struct ratio_residual {
-    double log_ratio;
-
-    template <typename T> bool operator()(const T *ratio, T *residual) const
-    {
-        residual[0] = (ratio[1] - log_ratio) / ratio_deviation;
-        return true;
-    }
-};
-
-/* Tone curves are smooth: the higher a power, the less of it. */
-struct tone_residual {
-    template <typename T> bool operator()(const T *tone, T *residual) const
-    {
-        for (int k = 0; k < WEFT_TONE_TERMS; k++)
-            residual[k] = tone[k] / tone_deviation[k];
-        return true;
-    }
-};
-
-struct beam_residual {
-    template <typename T> bool operator()(const T *beam, T *residual) const
-    {
-        for (int k = 0; k < WEFT_BEAM_TERMS; k++)
-            residual[k] = (beam[k] - beam_mean[k]) / beam_deviation[k];
-        return true;
-    }
-};
-
-/* (value - mean) / deviation of every unknown in a block. */
-template <int N> struct prior_residual {
-    std::array<double, N> mean;
-    double deviation;
-
-    template <typename T> bool operator()(const T *value, T *residual) const
-    {
-        for (int i = 0; i < N; i++)
-            residual[i] = (value[i] - mean[i]) / deviation;
         return true;
     }
 };

@@ -23,14 +23,6 @@ struct shared_unknowns {
         beam[WEFT_BEAM_TERMS];
 };
 
-/* The mean is where the block stands now. */
-template <int N> void add_prior(owned_problem &terms, double *block, double deviation)
-{
-    std::array<double, N> mean;
-    std::copy_n(block, N, mean.begin());
-    terms.add<N, N>(prior_residual<N>{mean, deviation}, nullptr, block);
-}
-
 class lamp_terms
 {
   public:
@@ -67,6 +59,7 @@ class lamp_terms
         int photograph, ball;
     };
     std::vector<highlight_seen> highlights;
+    std::vector<std::pair<const paper_residual *, int>> papers; /* bare ones, and the photograph of each */
     std::vector<std::pair<const pin_residual *, int>> pins;
 
     double *lamp_of(int i)
@@ -128,9 +121,11 @@ class lamp_terms
             residual.weight = share / (is_ink ? ink_deviation : paper_deviation);
             for (int c = 0; c < 3; c++)
                 residual.log_light[c] = add_powers(s.light[c], 1, residual.power[c]);
-            terms.add<3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(residual, terms.cauchy(3 * share), lamp_of(i),
-                                                                       own[(size_t)i].level, shared.tone,
-                                                                       shared.vignetting, &shared.ink, shared.beam);
+            const auto *kept = terms.add<3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(
+                residual, terms.cauchy(3 * share), lamp_of(i), own[(size_t)i].level, shared.tone, shared.vignetting,
+                &shared.ink, shared.beam);
+            if (!is_ink)
+                papers.emplace_back(kept, i);
         }
     }
 
@@ -237,7 +232,8 @@ class lamp_terms
             }
             terms.add<3, WEFT_TONE_TERMS, 3>(residual, terms.cauchy(3 * share), shared.tone, ratio);
         }
-        terms.add<1, 3>(ratio_residual{pair.log_ratio}, terms.cauchy(2), ratio);
+        /* As the camera wrote it. The white balance may change, so it holds for green. */
+        terms.prior<3>(ratio, {HUGE_VAL, ratio_deviation, HUGE_VAL}, terms.cauchy(2));
     }
 
     void hold(double *block)
@@ -248,28 +244,25 @@ class lamp_terms
 
     void add_priors()
     {
-        terms.add<WEFT_TONE_TERMS, WEFT_TONE_TERMS>(tone_residual{}, nullptr, shared.tone);
+        terms.prior(shared.tone, tone_deviation);
         /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
         shared.vignetting[0] = -2 * input->corner_radius_squared;
-        add_prior<2>(terms, shared.vignetting, vignetting_deviation);
-        add_prior<1>(terms, &shared.ink, ink_prior_deviation);
+        terms.prior<2>(shared.vignetting, {vignetting_deviation, vignetting_deviation});
+        terms.prior<1>(&shared.ink, {ink_prior_deviation});
         for (auto &shift : shared.shift)
-            add_prior<2>(terms, shift, shift_deviation_mm / unit_mm);
-        add_prior<3>(terms, shared.pin_shift, pin_deviation_mm / unit_mm);
-        add_flash_priors();
+            terms.prior<2>(shift, {shift_deviation_mm / unit_mm, shift_deviation_mm / unit_mm});
+        const double pin = pin_deviation_mm / unit_mm, flash = flash_deviation_mm / unit_mm;
+        terms.prior<3>(shared.pin_shift, {pin, pin, pin});
+        if (input->flash) {
+            terms.prior(shared.beam, beam_deviation);
+            terms.prior<3>(shared.flash, {flash, flash, flash});
+        } else {
+            hold(shared.beam);
+        }
         for (int i = 0; !input->flash && i < input->count; i++)
             terms.add<1, 3>(distance_residual{}, nullptr, lamp_of(i));
         if (!input->tone_unknown)
             hold(shared.tone);
-    }
-
-    void add_flash_priors()
-    {
-        terms.add<WEFT_BEAM_TERMS, WEFT_BEAM_TERMS>(beam_residual{}, nullptr, shared.beam);
-        if (input->flash)
-            add_prior<3>(terms, shared.flash, flash_deviation_mm / unit_mm);
-        else
-            hold(shared.beam);
     }
 };
 

@@ -5,8 +5,22 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
+
+/* (value - mean) / deviation of every unknown in a block. */
+template <int N> struct prior_residual {
+    std::array<double, N> mean, deviation;
+
+    template <typename T> bool operator()(const T *value, T *residual) const
+    {
+        for (size_t i = 0; i < N; i++)
+            residual[i] = (value[i] - mean[i]) / deviation[i];
+        return true;
+    }
+};
 
 class owned_problem
 {
@@ -27,6 +41,15 @@ class owned_problem
         const residual_type *kept = owned.release();
         problem.AddResidualBlock(costs.back().get(), loss, blocks...);
         return kept;
+    }
+
+    /* What is known of a block beforehand: the mean is where it stands now. */
+    template <int N> void prior(double *block, const double (&deviation)[N], ceres::LossFunction *loss = nullptr)
+    {
+        prior_residual<N> known;
+        std::copy_n(block, N, known.mean.begin());
+        std::copy_n(deviation, N, known.deviation.begin());
+        add<N, N>(known, loss, block);
     }
 
     ceres::LossFunction *cauchy(double width)

@@ -1,4 +1,4 @@
-#include "registration/lamp/paper.h"
+#include "registration/lamp/evidence.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "registration/lamp/pin.h"
+#include "registration/lamp/evidence.h"
 
 #include "base/numeric/statistics.h"
 

@@ -1,5 +1,5 @@
+#include "registration/lamp/evidence.h"
 #include "registration/lamp/owned_problem.h"
-#include "registration/lamp/pin.h"
 
 #include <ceres/ceres.h>
 
@@ -61,17 +61,6 @@ struct texel_residual {
     }
 };
 
-struct place_residual {
-    double place[2], weight;
-
-    template <typename T> bool operator()(const T *at, T *residual) const
-    {
-        residual[0] = (at[0] - place[0]) * weight;
-        residual[1] = (at[1] - place[1]) * weight;
-        return true;
-    }
-};
-
 class shadow_fit
 {
   public:
@@ -120,8 +109,8 @@ class shadow_fit
 
     void hold_near(double *place, double deviation_mm)
     {
-        terms.add<2, 2>(place_residual{{place[0], place[1]}, noise * std::sqrt(texels_alike) / deviation_mm}, nullptr,
-                        place);
+        const double deviation = deviation_mm / (noise * std::sqrt(texels_alike));
+        terms.prior<2>(place, {deviation, deviation});
     }
 
     void add(int i)

@@ -4,9 +4,33 @@
 
 #include "base/picture/exif.h"
 #include "base/status.h"
-#include "registration/lamp/tone.h"
 
 #include <stdint.h>
+
+/* ---- The tone curve of a camera: from encoded values to values in proportion to light ---- */
+
+enum { WEFT_TONE_STEPS = 1024 };
+
+/* linear[i] is the light of the encoded value i / WEFT_TONE_STEPS. It grows with i, and the last is 1. */
+typedef struct weft_tone_curve {
+    float linear[WEFT_TONE_STEPS + 1];
+} weft_tone_curve;
+
+/* What a file that says nothing else is taken for: sRGB (IEC 61966-2-1), or values that are linear already. */
+weft_tone_curve weft_tone_srgb(void);
+weft_tone_curve weft_tone_linear(void);
+
+/* Multiplies the light of an encoded value v by exp(sum_k term[k] (2 v - 1)^(k + 1)), lets it never fall, and divides
+ * it by what it has at 1, which is returned. Pure. */
+double weft_tone_bend(weft_tone_curve *tone, const double *term, int terms);
+
+/* Light of an encoded value, which is held to 0..1: linear between the steps. Pure. */
+static inline float weft_tone_decode(const weft_tone_curve *tone, float encoded)
+{
+    float place = encoded > 0 ? (encoded < 1 ? encoded : 1) * WEFT_TONE_STEPS : 0;
+    int step = place < WEFT_TONE_STEPS ? (int)place : WEFT_TONE_STEPS - 1;
+    return tone->linear[step] + (place - (float)step) * (tone->linear[step + 1] - tone->linear[step]);
+}
 
 /* A sample that has reached this is clipped. */
 enum { WEFT_PHOTOGRAPHS_FULL_SCALE = 65535 };
@@ -32,5 +56,15 @@ typedef struct weft_light_values {
 weft_code weft_light_values_read(const char *path, int width, int height, const weft_tone_curve *tone,
                                  weft_file_range range, weft_light_values *values, weft_error *error);
 void weft_light_values_free(weft_light_values *values);
+
+/* ---- The exposure that a camera means ---- */
+
+/* Cameras count in thirds of a stop and write round numbers: 1/60 s is 1/64 s. Returns 2^(k/3) for such a number of
+ * seconds, and every other one as it is: telephones write what they mean. Pure. */
+double weft_exposure_meant(double written);
+
+/* Time x sensitivity / f-number^2: time as meant; ISO 125 is 126; the f-number as written. 0 where the camera wrote
+ * none. Pure. */
+double weft_exif_exposure(const weft_exif *exif);
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "base/status.h"
 
+#include <stdint.h>
+
 typedef enum weft_board_kind {
     WEFT_BOARD_PLATE,      /* the target (btf/session/target.h) */
     WEFT_BOARD_CHESSBOARD, /* inner corners */
@@ -31,5 +33,17 @@ weft_code weft_board_parse(const char *text, weft_board *board, weft_error *erro
 
 /* The most points that a photograph of it can show. Pure. */
 int weft_board_point_limit(const weft_board *board);
+
+/* ---- The points of a board in a photograph ---- */
+
+typedef struct weft_board_point {
+    double board_mm[2]; /* on the board */
+    double pixel[2];    /* origin at the centre of the top left pixel */
+} weft_board_point;
+
+/* Finds the points of the board in an 8-bit grey picture, to a fraction of a pixel. `point` has room for
+ * weft_board_point_limit. *count is 0 where the board is not seen. Errors: WEFT_SYSTEM. */
+weft_code weft_board_find(const weft_board *board, const uint8_t *grey, int width, int height, weft_board_point *point,
+                          int *count, weft_error *error);
 
 #endif

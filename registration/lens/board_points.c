@@ -1,4 +1,4 @@
-#include "registration/lens/board_points.h"
+#include "registration/lens/board.h"
 
 #include "btf/session/target.h"
 #include "registration/pose/opencv_bridge.h"

@@ -1,5 +1,6 @@
 #include "registration/lens/calibration.h"
 
+#include "base/numeric/statistics.h"
 #include "registration/lens/fit.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ static weft_code median_of(const weft_lens_fit *fit, int first, int count, doubl
         return weft_fail_memory(error, "residuals", (size_t)count * sizeof *length);
     for (int i = 0; i < count; i++)
         length[i] = length_of(fit->corners.residual_px[first + i]);
-    *median = weft_board_median(length, count);
+    *median = weft_quantile(length, (size_t)count, 0.5);
     free(length);
     return WEFT_OK;
 }
@@ -43,7 +44,7 @@ static weft_code leave_out_worst(weft_board_photograph *photograph, const weft_l
         worst = off[view] > off[worst] ? view : worst;
     }
     if (code == WEFT_OK) {
-        double usual = weft_board_median(sorted, fit->views);
+        double usual = weft_quantile(sorted, (size_t)fit->views, 0.5);
         *changed = off[worst] > least_off_px && off[worst] > off_ratio * usual;
         if (*changed)
             weft_board_leave_out(&photograph[fit->photograph[worst]],

@@ -1,6 +1,8 @@
-#include "registration/lens/photographs.h"
+#include "registration/lens/fit.h"
 
+#include "base/numeric/statistics.h"
 #include "base/picture/image.h"
+#include "registration/lens/board.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -31,18 +33,6 @@ int weft_board_used(const weft_board_photograph *photograph, int count)
     for (int i = 0; i < count; i++)
         used += weft_board_is_used(&photograph[i]);
     return used;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-double weft_board_median(double *value, int count)
-{
-    qsort(value, (size_t)count, sizeof *value, ascending);
-    return count > 0 ? value[count / 2] : 0;
 }
 
 /* ---- Grey ---- */
@@ -80,6 +70,66 @@ static uint8_t *grey_of(const weft_image *image)
     return grey;
 }
 
+/* ---- How blurred a photograph is ---- */
+
+enum { REACH = 10, DIRECTIONS = 4 };
+
+static const int direction[DIRECTIONS][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}};
+
+static int grey_range(const uint8_t *grey, int width, int x0, int y0)
+{
+    int low = 255, high = 0;
+    for (int y = y0 - REACH; y <= y0 + REACH; y++) {
+        for (int x = x0 - REACH; x <= x0 + REACH; x++) {
+            int value = grey[(long)y * width + x];
+            low = value < low ? value : low;
+            high = value > high ? value : high;
+        }
+    }
+    return high - low;
+}
+
+/* Grey values a pixel. */
+static double steepest_slope(const uint8_t *grey, int width, int x0, int y0, const int d[2])
+{
+    int most = 0;
+    long step = (long)d[1] * width + d[0];
+    for (int y = y0 - REACH; y <= y0 + REACH; y++) {
+        for (int x = x0 - REACH; x <= x0 + REACH; x++) {
+            const uint8_t *at = grey + (long)y * width + x;
+            int difference = abs(at[step] - at[-step]);
+            most = difference > most ? difference : most;
+        }
+    }
+    return most / (2 * hypot(d[0], d[1]));
+}
+
+/* 0 too near the border, or where there is no edge. */
+static double width_at(const uint8_t *grey, int width, int height, const double pixel[2])
+{
+    int x = (int)lround(pixel[0]), y = (int)lround(pixel[1]);
+    if (x <= REACH || y <= REACH || x >= width - REACH - 1 || y >= height - REACH - 1)
+        return 0;
+    double least = INFINITY;
+    for (int i = 0; i < DIRECTIONS; i++)
+        least = fmin(least, steepest_slope(grey, width, x, y, direction[i]));
+    return least > 0 ? grey_range(grey, width, x, y) / least : 0;
+}
+
+/* How wide the edges around the points are, in pixels: grey range over steepest slope, in the direction in which it is
+ * least (a shake blurs one direction only); the median of the points. 0 without points. */
+static double edge_width(const uint8_t *grey, int width, int height, const weft_board_point *point, int count)
+{
+    enum { MOST = 256 };
+    double widths[MOST];
+    int known = 0, stride = count / MOST + 1;
+    for (int i = 0; i < count && known < MOST; i += stride) {
+        widths[known] = width_at(grey, width, height, point[i].pixel);
+        known += widths[known] > 0;
+    }
+    return weft_quantile(widths, (size_t)known, 0.5);
+}
+
 /* ---- One photograph ---- */
 
 static weft_code find_board(const weft_board *board, const weft_image *image, weft_board_photograph *p,
@@ -95,7 +145,7 @@ static weft_code find_board(const weft_board *board, const weft_image *image, we
     }
     weft_code code = weft_board_find(board, grey, image->width, image->height, p->point, &p->count, error);
     if (code == WEFT_OK)
-        p->edge_width = weft_board_edge_width(grey, image->width, image->height, p->point, p->count);
+        p->edge_width = edge_width(grey, image->width, image->height, p->point, p->count);
     free(grey);
     return code;
 }
@@ -161,7 +211,7 @@ static weft_code leave_out_blurred(weft_board_photograph *photograph, int count,
     for (int i = 0; i < count; i++)
         if (weft_board_is_used(&photograph[i]))
             width[known++] = photograph[i].edge_width;
-    double usual = weft_board_median(width, known);
+    double usual = weft_quantile(width, (size_t)known, 0.5);
     for (int i = 0; i < count; i++) {
         weft_board_photograph *p = &photograph[i];
         if (weft_board_is_used(p) && p->edge_width > blurred_width && p->edge_width > blurred_ratio * usual)

@@ -1,4 +1,4 @@
-#include "registration/outcome/survey.h"
+#include "registration/outcome/outcome.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,9 @@
-#include "registration/photographs/certainty.h"
+#include "registration/photographs/steps.h"
 
-#include "base/numeric/cholesky.h"
 #include "base/numeric/statistics.h"
 #include "base/picture/colour.h"
+#include "btf/session/rig_poses.h"
+#include "registration/pose/normal_equations.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,24 +16,13 @@ static const double shared_error = 0.02;
 
 /* ---- The view ---- */
 
-/* The pose after small turns about the axes of the camera, rad, and small moves along them, mm. */
+/* The pose after a small turn about an axis of the camera, rad, or a small move along one, mm. */
 static weft_pose moved_pose(const weft_pose *pose, int parameter, double step)
 {
-    weft_pose moved = *pose;
-    double *along[3] = {&moved.translation.x, &moved.translation.y, &moved.translation.z};
-    if (parameter >= 3) {
-        *along[parameter - 3] += step;
-        return moved;
-    }
-    int a = (parameter + 1) % 3, b = (parameter + 2) % 3;
-    double c = cos(step), s = sin(step), u = *along[a], v = *along[b];
-    for (int k = 0; k < 3; k++) {
-        moved.rotation[a][k] = c * pose->rotation[a][k] - s * pose->rotation[b][k];
-        moved.rotation[b][k] = s * pose->rotation[a][k] + c * pose->rotation[b][k];
-    }
-    *along[a] = c * u - s * v;
-    *along[b] = s * u + c * v;
-    return moved;
+    weft_motion motion = {{0, 0, 0}, {0, 0, 0}};
+    (parameter < 3 ? motion.rotation : motion.translation)[parameter % 3] = step;
+    weft_pose moved = weft_pose_of_motion(&motion);
+    return weft_pose_after(&moved, pose);
 }
 
 static weft_pixel seen_at(const weft_camera *camera, const weft_pose *pose, const double plate[2])
@@ -63,27 +53,23 @@ static void find_slopes(const weft_camera *camera, const weft_photographs_photog
     }
 }
 
-/* Sum of the squares of the direction's deviations where corners of unit variance tell the pose; negative where they do
- * not. */
+/* Sum of the squares of the direction's deviations where corners of unit variance determine the pose; negative where
+ * they do not. */
 static double view_variance(const pose_slopes *slopes, int corner_count)
 {
-    double normal[POSE * POSE] = {0}, variance = 0;
-    for (int row = 0; row < POSE; row++) {
-        for (int column = 0; column <= row; column++) {
-            for (int i = 0; i < corner_count; i++)
-                normal[row * POSE + column] += slopes->corner[row][i][0] * slopes->corner[column][i][0] +
-                                               slopes->corner[row][i][1] * slopes->corner[column][i][1];
-        }
+    weft_normal_equations equations = {0};
+    double row[WEFT_UNKNOWNS_LIMIT] = {0}, variance = 0;
+    for (int i = 0; i < 2 * corner_count; i++) {
+        for (int k = 0; k < POSE; k++)
+            row[k] = slopes->corner[k][i / 2][i % 2];
+        weft_normal_equations_add(&equations, row, 0, 1);
     }
-    if (!weft_cholesky_factor(POSE, POSE, normal))
+    if (!weft_normal_equations_factor(&equations, POSE))
         return -1;
     for (int axis = 0; axis < 3; axis++) {
-        double along[POSE];
         for (int k = 0; k < POSE; k++)
-            along[k] = axis == 0 ? slopes->view[k].x : axis == 1 ? slopes->view[k].y : slopes->view[k].z;
-        weft_cholesky_solve_lower(POSE, POSE, normal, along);
-        for (int k = 0; k < POSE; k++)
-            variance += along[k] * along[k];
+            row[k] = axis == 0 ? slopes->view[k].x : axis == 1 ? slopes->view[k].y : slopes->view[k].z;
+        variance += weft_normal_equations_variance(&equations, POSE, row);
     }
     return variance;
 }
@@ -98,45 +84,6 @@ double weft_photographs_view_error_deg(const weft_camera *camera, const weft_pho
     double variance = view_variance(&slopes, photograph->corner_count);
     double square = photograph->corner_rms_px * photograph->corner_rms_px * photograph->corner_count / freedom;
     return variance < 0 ? 90 : fmin(90, weft_deg_of_rad(sqrt(square * variance)));
-}
-
-/* ---- The light ---- */
-
-/* Logarithm of the light of a sample of paper, over what the lamp explains of it but for its level. */
-static double paper_deviation(const double place[2], const weft_paper_sample *sample, const weft_lamp_solution *lamps,
-                              weft_vec3 lamp, const weft_pose *pose)
-{
-    double power = 1, encoded = 2 * (double)weft_srgb_of_linear(sample->light[1]) - 1;
-    double value = log((double)sample->light[1]), square = sample->radius_squared;
-    for (int k = 0; k < WEFT_TONE_TERMS; k++)
-        value += lamps->tone[k] * (power *= encoded);
-    double fall = 1 + square * (lamps->vignetting[0] + square * (lamps->vignetting[1] + square * lamps->vignetting[2]));
-    double reach = weft_length(weft_subtract(lamp, weft_vec3_of(place[0], place[1], 0)));
-    double beam = weft_flash_log_beam(&lamps->flash, pose, place[0], place[1]);
-    return value - log(fall) + 3 * log(reach / weft_length(lamp)) - beam;
-}
-
-weft_code weft_photographs_paper_residual(const weft_paper_places *places, const weft_lamp_evidence *evidence,
-                                          const weft_lamp_solution *lamps, const weft_lamp_place *lamp,
-                                          double *residual, weft_error *error)
-{
-    const weft_paper_samples *paper = &evidence->paper;
-    size_t count = 0, most = (size_t)paper->count + 1;
-    double *deviation = malloc(most * sizeof *deviation);
-    if (!deviation)
-        return weft_fail_memory(error, "samples of paper", most * sizeof *deviation);
-    for (int i = 0; i < paper->count; i++) {
-        const weft_paper_sample *sample = &paper->sample[i];
-        if (!places->is_ink[sample->place] && sample->light[1] > 0)
-            deviation[count++] =
-                paper_deviation(places->place[sample->place], sample, lamps, lamp->position_mm, &evidence->pose);
-    }
-    double middle = weft_quantile(deviation, count, 0.5);
-    for (size_t i = 0; i < count; i++)
-        deviation[i] = fabs(deviation[i] - middle);
-    *residual = 1.4826 * weft_quantile(deviation, count, 0.5);
-    free(deviation);
-    return WEFT_OK;
 }
 
 /* ---- The weight ---- */

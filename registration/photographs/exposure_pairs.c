@@ -1,4 +1,4 @@
-#include "registration/photographs/exposure_pairs.h"
+#include "registration/photographs/steps.h"
 
 #include <stdio.h>
 #include <string.h>

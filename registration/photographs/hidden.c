@@ -1,7 +1,7 @@
-#include "registration/photographs/hidden.h"
+#include "registration/photographs/steps.h"
 
 #include "btf/dataset/dataset.h"
-#include "registration/lamp/pin.h"
+#include "registration/lamp/evidence.h"
 
 #include <math.h>
 

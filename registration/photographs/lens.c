@@ -1,7 +1,6 @@
 #include "registration/photographs/lens.h"
 
 #include "base/numeric/statistics.h"
-#include "registration/photographs/strays.h"
 #include "registration/pose/opencv_bridge.h"
 
 #include <math.h>
@@ -123,6 +122,50 @@ static double outlier_limit(double median, const weft_camera *camera)
     return fmax(outlier_ratio * median, outlier_floor * fmax(camera->width, camera->height));
 }
 
+/* Fewer corners than this, or than this share of those that were found, are no majority to trust. */
+enum { fewest_corners = 12 };
+static const double least_share = 0.75;
+
+/* Distance in undistorted pixels. */
+static double distance(const weft_homography *homography, const double plate[2], const double straight[2])
+{
+    weft_pixel put = weft_homography_apply(homography, plate[0], plate[1]);
+    return hypot(put.x - straight[0], put.y - straight[1]);
+}
+
+/* Takes out of the photograph the corners that lie more than `reach_px` from where the others put them: one plane, seen
+ * through the lens. Something crosses them: a pin, its shadow or the edge of another sheet. Where more than a quarter
+ * are off, nothing is taken out: then the photograph is wrong, not a few markers. */
+static weft_code drop_strays_of(const weft_camera *camera, double reach_px, weft_photographs_photograph *photograph,
+                                int *dropped, weft_error *error)
+{
+    const int count = photograph->corner_count, found = 4 * photograph->marker_count;
+    int agreeing = 0;
+    double straight[WEFT_PLATE_CORNERS][2];
+    uint8_t agrees[WEFT_PLATE_CORNERS] = {0};
+    weft_homography homography;
+    *dropped = 0;
+    if (count < fewest_corners)
+        return WEFT_OK;
+    for (int i = 0; i < count; i++) {
+        weft_pixel pixel = weft_camera_undistort(camera, (weft_pixel){photograph->seen[i][0], photograph->seen[i][1]});
+        straight[i][0] = pixel.x, straight[i][1] = pixel.y;
+    }
+    weft_code code = weft_opencv_fit_homography((const double(*)[2])photograph->plate, (const double(*)[2])straight,
+                                                count, reach_px, homography.m, agrees, error);
+    if (code != WEFT_OK)
+        return code == WEFT_BAD_INPUT ? WEFT_OK : code;
+    for (int i = 0; i < count; i++) {
+        agrees[i] = distance(&homography, photograph->plate[i], straight[i]) <= reach_px;
+        agreeing += agrees[i];
+    }
+    if (agreeing < fewest_corners || agreeing < least_share * found)
+        return WEFT_OK;
+    weft_photographs_keep_corners(photograph, agrees);
+    *dropped = count - agreeing;
+    return WEFT_OK;
+}
+
 /* Takes single corners out, first: a pin before one marker is no reason to lose a photograph. *dropped: how many. */
 static weft_code drop_strays(weft_photographs_photograph *photograph, int count, const weft_camera *camera,
                              int *dropped, weft_error *error)
@@ -132,7 +175,7 @@ static weft_code drop_strays(weft_photographs_photograph *photograph, int count,
     for (int i = 0; i < count; i++) {
         int own = 0;
         if (weft_photographs_used(&photograph[i]))
-            WEFT_TRY(weft_strays_drop(camera, limit, &photograph[i], &own, error));
+            WEFT_TRY(drop_strays_of(camera, limit, &photograph[i], &own, error));
         *dropped += own;
     }
     return WEFT_OK;

@@ -3,10 +3,6 @@
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "registration/lamp/read.h"
-#include "registration/photographs/certainty.h"
-#include "registration/photographs/exposure_pairs.h"
-#include "registration/photographs/hidden.h"
-#include "registration/photographs/thumbnail.h"
 #include "registration/resample/resample.h"
 
 #include <math.h>

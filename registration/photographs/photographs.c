@@ -1,12 +1,8 @@
 #include "registration/photographs/photographs.h"
 
 #include "base/clock.h"
-#include "registration/lamp/exposure.h"
-#include "registration/photographs/certainty.h"
-#include "registration/photographs/exposure_pairs.h"
-#include "registration/photographs/file_colours.h"
+#include "registration/lamp/read.h"
 #include "registration/photographs/steps.h"
-#include "registration/photographs/thumbnail.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -192,22 +188,6 @@ static void correct_tone(weft_photograph_set *set)
     }
 }
 
-/* How far views and lamps can be trusted. Before the tone curve is corrected: the evidence is what the first one made.
- */
-static weft_code judge_photographs(work *w, weft_error *error)
-{
-    weft_photograph_set *set = w->set;
-    for (int i = 0; i < set->count; i++) {
-        weft_photographs_photograph *p = &set->photograph[i];
-        if (!weft_photographs_used(p))
-            continue;
-        p->view_uncertainty_deg = weft_photographs_view_error_deg(&set->lens.camera, p);
-        WEFT_TRY(weft_photographs_paper_residual(&w->places, &w->evidence[i], &set->lamps, &p->lamp, &p->lamp.residual,
-                                                 error));
-    }
-    return WEFT_OK;
-}
-
 /* A pin is looked for unless the lamp shines from the camera: then it hides its own shadow. */
 static weft_code prepare_pin(work *w, weft_error *error)
 {
@@ -313,10 +293,12 @@ static weft_code find_lamps(work *w, weft_error *error)
     set->lamps.place = NULL;
     free(evidence);
     free(index);
-    if (code == WEFT_OK)
-        code = judge_photographs(w, error);
-    if (code != WEFT_OK)
-        return code;
+    WEFT_TRY(code);
+    for (int i = 0; i < set->count; i++) {
+        if (weft_photographs_used(&set->photograph[i]))
+            set->photograph[i].view_uncertainty_deg =
+                weft_photographs_view_error_deg(&set->lens.camera, &set->photograph[i]);
+    }
     memcpy(set->lens.camera.vignetting, set->lamps.vignetting, sizeof set->lamps.vignetting);
     if (set->tone_found)
         correct_tone(set);

@@ -33,13 +33,13 @@ static float sample_at(const float *photograph, int width, int height, weft_pixe
 }
 
 static void draw_front(const weft_sight *sight, const weft_target *target, const float *photograph,
-                       const weft_homography *promised, float *front)
+                       const weft_homography *predicted, float *front)
 {
 #pragma omp parallel for schedule(static)
     for (int row = 0; row < front_side; row++) {
         for (int column = 0; column < front_side; column++) {
             weft_pixel plate = plate_of_front(target, column, row);
-            weft_pixel seen = weft_camera_distort(&sight->camera, weft_homography_apply(promised, plate.x, plate.y));
+            weft_pixel seen = weft_camera_distort(&sight->camera, weft_homography_apply(predicted, plate.x, plate.y));
             front[row * front_side + column] = sample_at(photograph, sight->camera.width, sight->camera.height, seen);
         }
     }
@@ -59,7 +59,7 @@ static void expose_front(const float *front, uint8_t *grey)
 }
 
 /* Fills the corners of the target's own markers, on the plate (mm) and in the photograph (undistorted pixels). */
-static int pair_corners(const weft_target *target, const weft_homography *promised, const weft_marker *marker,
+static int pair_corners(const weft_target *target, const weft_homography *predicted, const weft_marker *marker,
                         int marker_count, double (*plate)[2], double (*seen)[2])
 {
     int count = 0;
@@ -70,8 +70,8 @@ static int pair_corners(const weft_target *target, const weft_homography *promis
         const double outline[4][2] = {{r.x0, r.y1}, {r.x1, r.y1}, {r.x1, r.y0}, {r.x0, r.y0}};
         for (int corner = 0; corner < 4; corner++, count++) {
             const double *front = marker[i].corner[corner];
-            weft_pixel promised_at = plate_of_front(target, front[0], front[1]);
-            weft_pixel pixel = weft_homography_apply(promised, promised_at.x, promised_at.y);
+            weft_pixel predicted_at = plate_of_front(target, front[0], front[1]);
+            weft_pixel pixel = weft_homography_apply(predicted, predicted_at.x, predicted_at.y);
             plate[count][0] = outline[corner][0];
             plate[count][1] = outline[corner][1];
             seen[count][0] = pixel.x;
@@ -100,7 +100,7 @@ static weft_code fit_corners(double (*plate)[2], double (*seen)[2], int count, w
 }
 
 weft_code weft_markers_locate(const weft_sight *sight, const weft_target *target, const float *photograph,
-                              const weft_homography *promised, weft_marker_start *start, weft_error *error)
+                              const weft_homography *predicted, weft_marker_start *start, weft_error *error)
 {
     *start = (weft_marker_start){0};
     float *front = malloc(sizeof *front * front_side * front_side);
@@ -113,12 +113,12 @@ weft_code weft_markers_locate(const weft_sight *sight, const weft_target *target
         code = weft_fail_memory(error, "a front view", 5ull * front_side * front_side);
         goto done;
     }
-    draw_front(sight, target, photograph, promised, front);
+    draw_front(sight, target, photograph, predicted, front);
     expose_front(front, grey);
     code = weft_opencv_find_markers(NULL, grey, front_side, front_side, marker, WEFT_MARKERS_LIMIT, &count, error);
     if (code != WEFT_OK)
         goto done;
-    count = pair_corners(target, promised, marker, count, plate, seen);
+    count = pair_corners(target, predicted, marker, count, plate, seen);
     start->found = count / 4;
     if (start->found >= 2)
         code = fit_corners(plate, seen, count, start, error);

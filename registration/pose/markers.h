@@ -12,9 +12,9 @@ typedef struct weft_marker_start {
 } weft_marker_start;
 
 /* Looks for the markers in a front view made from `photograph` ([height][width], linear) with the homography that the
- * rig promises: there they are upright, square and large at every tilt, and a rig is far closer than a marker's width.
+ * rig predicts: there they are upright, square and large at every tilt, and a rig is far closer than a marker's width.
  * Their corners are then carried back to the photograph. Too few markers are no error. Errors: WEFT_SYSTEM. */
 weft_code weft_markers_locate(const weft_sight *sight, const weft_target *target, const float *photograph,
-                              const weft_homography *promised, weft_marker_start *start, weft_error *error);
+                              const weft_homography *predicted, weft_marker_start *start, weft_error *error);
 
 #endif

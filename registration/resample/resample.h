@@ -55,4 +55,10 @@ void weft_resampler_apply(const weft_resampler *resampler, const uint16_t *sampl
 void weft_resampler_apply_merged(const weft_resampler *resampler, const float *value, const float *variance,
                                  float *texel, uint8_t *mask);
 
+/* ---- How much of a quadrangle lies in a pixel ---- */
+
+/* Area of the intersection of a convex quadrangle with the unit square centred at the pixel (x, y), by clipping one
+ * side after the other (Sutherland & Hodgman 1974). Pure. */
+double weft_overlap_area(const weft_pixel corner[4], int x, int y);
+
 #endif

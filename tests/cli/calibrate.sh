@@ -26,7 +26,7 @@ import json, re, sys
 events = [json.loads(line) for line in open(sys.argv[1])]
 notes = "\n".join(e["text"] for e in events if e["event"] == "note")
 for words in ("left out tv000_pv000/", "left out tv020_pv030/", "the target", "9 of 11 shots",
-              "expected before the target is looked at, 11 poses", "axes of the light are not seen"):
+              "expected before the target is looked at, 11 poses", "cannot see the axes of the light"):
     assert words in notes, (words, notes)
 poses = [e for e in events if e["event"] == "poses"][0]
 known = re.search(r"lines are known to (\S+) degrees by these 9 shots; to (\S+) by 18, to (\S+) by 36 like them", notes)

@@ -1,5 +1,5 @@
 #include "capture/print/dictionary_bridge.h"
-#include "registration/lens/board_points.h"
+#include "registration/lens/board.h"
 #include "tests/support/expect_ok.h"
 
 #include <math.h>

@@ -320,7 +320,7 @@ static void equations_that_are_singular_are_refused(void **state)
     }
     assert_int_equal(weft_colour_fit_run(&chart, WEFT_COLOUR_LINEAR_TERMS, -1, "grey.jpg", &fit, &error),
                      WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "'grey.jpg': the patches of the chart tell no colour matrix"));
+    assert_non_null(strstr(error.message, "'grey.jpg': the patches of the chart determine no colour matrix"));
 }
 
 /* What the program says to other programs, and what it writes. */

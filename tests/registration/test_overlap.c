@@ -1,4 +1,4 @@
-#include "registration/resample/overlap.h"
+#include "registration/resample/resample.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"

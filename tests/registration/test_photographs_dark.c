@@ -1,7 +1,7 @@
 /* What is too dark to be read is not used: of the paper, and of the sample. */
 #include "btf/dataset/dataset.h"
-#include "registration/lamp/paper.h"
-#include "registration/photographs/certainty.h"
+#include "registration/lamp/evidence.h"
+#include "registration/photographs/steps.h"
 
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"

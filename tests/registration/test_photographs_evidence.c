@@ -1,8 +1,7 @@
 /* What single photographs tell of the lamp: the shadow of the pin, the highlight on a ball, a row of a list. Shadows
  * and highlights are drawn here by tracing rays, texel by texel, which the room under test does not do. */
-#include "registration/lamp/ball.h"
+#include "registration/lamp/evidence.h"
 #include "registration/lamp/listed.h"
-#include "registration/lamp/pin.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"

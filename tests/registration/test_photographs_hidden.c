@@ -1,6 +1,6 @@
 /* What the pin and the balls hide of the sample, against many points along the way to the lamp and the camera. */
 #include "btf/dataset/dataset.h"
-#include "registration/photographs/hidden.h"
+#include "registration/photographs/steps.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>

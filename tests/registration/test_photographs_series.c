@@ -1,8 +1,8 @@
 /* Photographs of one view and one lamp that differ in exposure. The camera's curve is that of film on a screen, in
  * whole numbers of 8 bits; the room under test bends sRGB by a polynomial. */
-#include "registration/lamp/exposure.h"
 #include "registration/lamp/lamp.h"
-#include "registration/photographs/exposure_pairs.h"
+#include "registration/lamp/read.h"
+#include "registration/photographs/steps.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"

@@ -2,7 +2,7 @@
  * (DiLiGenT, Shi et al. 2016). Skipped without them. */
 #include "base/picture/image.h"
 #include "base/text/csv.h"
-#include "registration/lamp/ball.h"
+#include "registration/lamp/evidence.h"
 
 #include "tests/support/cmocka_all.h"
 

@@ -1,7 +1,6 @@
 /* How far heights are looked for, on textures whose period the test knows, and heights of cloth of many tiles: marks on
  * bumps, traced ray by ray. */
 #include "relief/height_map.h"
-#include "relief/reach.h"
 #include "tests/support/expect_ok.h"
 
 #include "btf/direction/direction.h"
