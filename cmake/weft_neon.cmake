@@ -3,11 +3,12 @@
 find_program(WEFT_NEON_COMPILER aarch64-linux-gnu-gcc)
 find_program(WEFT_NEON_RUNNER qemu-aarch64)
 
-# weft_neon_program(NAME file...): from plain C sources, some of which may use base/lanes.h, without libraries. Path: ${NAME}_PATH.
+# weft_neon_program(NAME file...): from plain C sources, some of which may use base/lanes.h, without libraries: functions that nothing
+# calls may lack what they call. Path: ${NAME}_PATH.
 function(weft_neon_program name)
     # What is computed is checked here, not how fast: -O1 compiles in half the time.
     set(flags -std=c17 -D_GNU_SOURCE -I${CMAKE_SOURCE_DIR} -O1 -Wall -Wextra -Werror -fno-math-errno
-        -DWEFT_INSTRUCTION_SET=baseline -ffp-contract=fast -fno-trapping-math -Wno-psabi)
+        -DWEFT_INSTRUCTION_SET=baseline -ffp-contract=fast -fno-trapping-math -Wno-psabi -ffunction-sections)
     set(objects)
     foreach(source ${ARGN})
         file(RELATIVE_PATH object ${CMAKE_SOURCE_DIR} ${source})
@@ -19,7 +20,7 @@ function(weft_neon_program name)
         list(APPEND objects ${object})
     endforeach()
     set(program ${CMAKE_CURRENT_BINARY_DIR}/${name})
-    add_custom_command(OUTPUT ${program} DEPENDS ${objects} COMMAND ${WEFT_NEON_COMPILER} -static ${objects} -lm -o ${program})
+    add_custom_command(OUTPUT ${program} DEPENDS ${objects} COMMAND ${WEFT_NEON_COMPILER} -static -Wl,--gc-sections ${objects} -lm -o ${program})
     add_custom_target(build_${name} ALL DEPENDS ${program})
     set(${name}_PATH ${program} PARENT_SCOPE)
 endfunction()
