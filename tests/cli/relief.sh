@@ -72,10 +72,10 @@ grep -q "they are left out" out.log && fail "the heights of a knit are left out:
 expect_ok info deep.weft
 grep -A1 "^heights:" out.log | grep -q "range_mm: \[-0" || fail "the material does not say that it has heights"
 expect_ok verify deep.weft
-expect_ok render deep.weft --mesh plane --repeat 2 --size 64x48 -o through.png
-expect_ok render deep.weft --mesh plane --repeat 2 --size 64x48 --relief off -o flat.png
+expect_ok render deep.weft --environment none --mesh plane --repeat 2 --size 64x48 -o through.png
+expect_ok render deep.weft --environment none --mesh plane --repeat 2 --size 64x48 --relief off -o flat.png
 expect_ok compress before.btf.h5 -o before.weft --components 16 --hold-out off
-expect_ok render before.weft --mesh plane --repeat 2 --size 64x48 -o off.png
+expect_ok render before.weft --environment none --mesh plane --repeat 2 --size 64x48 -o off.png
 "$python" - <<'PYTHON' || fail "the heights are not what is switched"
 import struct
 

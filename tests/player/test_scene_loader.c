@@ -77,6 +77,7 @@ static fixture *open_scene_as(const char *material, const char *dataset, weft_ra
     weft_error error = {0};
     expect_ok(weft_settings_init(&f->settings, &error), &error);
     f->settings.raw_format = format;
+    f->settings.has_lights = true; /* the default light: a studio takes longer to draw */
     f->settings.material = material ? strdup(material) : NULL;
     f->settings.dataset = dataset ? strdup(dataset) : NULL;
     expect_ok(weft_scene_loader_create(&f->settings, &f->loader, &error), &error);

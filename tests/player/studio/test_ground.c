@@ -129,11 +129,11 @@ static void the_shadow_of_a_ball_lies_where_geometry_has_it(void **state)
     weft_error error = {0};
     ball b = ball_of_mesh();
     studio_show(s->player, "sphere");
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 2; i++) {
         weft_surface_sample *at;
         weft_scene scene = weft_scene_default();
         scene.orbit.distance = 8;
-        scene.light[0].direction = (weft_angles){weft_rad_of_deg(20 + 11 * i), weft_rad_of_deg(-60 + 90 * i)};
+        scene.light[0].direction = (weft_angles){weft_rad_of_deg(25 + 25 * i), weft_rad_of_deg(-60 + 130 * i)};
         scene.key_size_rad = i % 2 ? weft_rad_of_deg(9) : 0;
         scene.ground = true;
         weft_image without = studio_picture(s->player, &scene);
@@ -223,10 +223,23 @@ static void the_ground_is_whole_when_a_camera_comes_to_rest(void **state)
     weft_image_free(&whole);
 }
 
+/* A board that leans: few triangles cast its shadow. */
+static void show_board(weft_player *player)
+{
+    weft_error error = {0};
+    weft_mesh mesh;
+    studio_show(player, "plane");
+    expect_ok(weft_mesh_open("plane", &mesh, &error), &error);
+    for (int i = 0; i < mesh.vertex_count; i++)
+        mesh.vertex[i].position[2] += mesh.vertex[i].position[0];
+    expect_ok(weft_player_set_mesh(player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+}
+
 static void expect_new_ground(weft_player *player, const weft_scene *scene)
 {
     weft_image after = studio_picture(player, scene);
-    studio_show(player, "drape");
+    show_board(player);
     weft_image fresh = studio_picture(player, scene);
     assert_memory_equal(after.pixels, fresh.pixels, 3 * sizeof(float) * PIXELS);
     weft_image_free(&after);
@@ -237,7 +250,7 @@ static void expect_new_ground(weft_player *player, const weft_scene *scene)
 static void another_light_casts_another_shadow_on_the_ground(void **state)
 {
     stage *s = *state;
-    studio_show(s->player, "drape");
+    show_board(s->player);
     weft_scene scene = studio_scene(s->player, "studio", WEFT_ENVIRONMENT_SMOOTH_REGIONS), first = scene;
     weft_image before = studio_picture(s->player, &scene);
     scene.light[0].direction.theta_rad += 0.2;
