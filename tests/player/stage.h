@@ -50,4 +50,16 @@ typedef struct stage_difference {
 stage_difference stage_compare(weft_player *player, weft_scene scene, weft_mode mode, int width, int height,
                                stage_evaluator *evaluate, void *context);
 
+/* Size of the pictures that shaders are compared in. */
+enum { STAGE_SHADED_WIDTH = 160, STAGE_SHADED_HEIGHT = 120 };
+
+/* Prints the difference of a picture of that size, and fails unless the RMSE is below 1/255 and no pixel is further off
+ * than 4/255, on graphics cards 8/255. */
+void stage_expect_small(const char *what, stage_difference difference);
+
+weft_vec3 stage_vector(const float v[3]);
+
+/* A surface of that BRDF x pi under the light, which may be below the horizon. */
+weft_rgba stage_lit(weft_rgb brdf_pi, weft_vec3 light, double opacity);
+
 #endif

@@ -1,13 +1,10 @@
-/* The shaders draw what the evaluators in C compute from the same surface points. Floors: RMSE below 1/255, largest
- * difference below 4/255, of 8-bit sRGB values. */
+/* The shaders draw what the evaluators of materials and datasets in C compute from the same surface points. */
 #include "stage.h"
 
 #include "evaluate/raw_btf.h"
 #include "player/draw/player_parts.h"
-#include "player/gl/context.h"
 #include "reflectance/components/components.h"
 #include "reflectance/lafortune/lafortune.h"
-#include "reflectance/microcylinder/file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,34 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WIDTH = 320, HEIGHT = 240 };
-
-static weft_vec3 vector(const float v[3])
-{
-    return weft_vec3_of((weft_real)v[0], (weft_real)v[1], (weft_real)v[2]);
-}
-
-static weft_rgba lit(weft_rgb brdf_pi, weft_vec3 light, double opacity)
-{
-    double cosine = fmax(light.z, 0);
-    return (weft_rgba){brdf_pi.r * cosine, brdf_pi.g * cosine, brdf_pi.b * cosine, opacity};
-}
-
-/* Between texels graphics cards keep 8 bits of the fraction; the software rasteriser keeps more. Maps of components
- * that are divided by the square of a small incidence show it. */
-static bool filters_coarsely(void)
-{
-    return !strstr(weft_gl_renderer(), "llvmpipe");
-}
-
-static void expect_small(const char *what, stage_difference difference)
-{
-    printf("%s: RMSE %.4f/255, largest %g/255 over %ld pixels\n", what, difference.rmse, difference.largest,
-           difference.pixels);
-    assert_true(difference.pixels > WIDTH * HEIGHT / 5);
-    assert_true(difference.rmse < 1);
-    assert_true(difference.largest < (filters_coarsely() ? 8 : 4));
-}
+enum { WIDTH = STAGE_SHADED_WIDTH, HEIGHT = STAGE_SHADED_HEIGHT };
 
 /* ---- Compressed ---- */
 
@@ -55,10 +25,10 @@ static weft_rgba evaluate_material(void *context, const weft_surface_sample *at)
 {
     material_model *model = context;
     /* Opacity does not depend on the light, but the evaluator has none for a light below the horizon. */
-    weft_vec3 light = vector(at->light), above = light.z > 0 ? light : weft_vec3_of(0, 0, 1);
+    weft_vec3 light = stage_vector(at->light), above = light.z > 0 ? light : weft_vec3_of(0, 0, 1);
     weft_rgba value = weft_material_sample(&model->material, &model->directions, (weft_real)at->level, (weft_real)at->u,
-                                           (weft_real)at->v, above, vector(at->view));
-    return lit((weft_rgb){value.r, value.g, value.b}, light, value.a);
+                                           (weft_real)at->v, above, stage_vector(at->view));
+    return stage_lit((weft_rgb){value.r, value.g, value.b}, light, value.a);
 }
 
 /* Multiplies a material by `gain`: rho by it, C by gain^(1/N). */
@@ -90,7 +60,8 @@ static void compare_dark_material(void **state, const char *what, double gain, i
     scene.exposure /= gain;
     expect_ok(weft_table_directions_create(&model.material, &model.directions, &error), &error);
     expect_ok(weft_player_set_material(s->player, &model.material, &error), &error);
-    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
+    stage_expect_small(what,
+                       stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
     weft_table_directions_free(&model.directions);
     weft_material_free(&model.material);
 }
@@ -108,7 +79,7 @@ static void compressed_equals_c_with_two_lobes_and_81_views(void **state)
 static void compressed_equals_c_between_levels(void **state)
 {
     weft_scene scene = weft_scene_default();
-    scene.repeat = 37;
+    scene.repeat = 18;
     compare_material(state, "minified", 2, 81, 0, scene);
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 1.37;
@@ -136,7 +107,7 @@ static void compressed_equals_c_with_a_light_table(void **state)
     compare_material(state, "81 views, 81 lights", 2, 81, 81, scene);
     compare_material(state, "33 lights, no views", 1, 0, 33, scene);
     scene.light[0].direction = (weft_angles){weft_rad_of_deg(70), weft_rad_of_deg(200)};
-    scene.repeat = 37;
+    scene.repeat = 18;
     compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
 }
 
@@ -159,7 +130,8 @@ static void compare_under_ceilings(void **state, const char *what, int views, we
     set_ceilings(&model.material);
     expect_ok(weft_table_directions_create(&model.material, &model.directions, &error), &error);
     expect_ok(weft_player_set_material(s->player, &model.material, &error), &error);
-    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
+    stage_expect_small(what,
+                       stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
     weft_table_directions_free(&model.directions);
     weft_material_free(&model.material);
 }
@@ -168,7 +140,7 @@ static void compressed_equals_c_under_ceilings(void **state)
 {
     weft_scene scene = weft_scene_default();
     compare_under_ceilings(state, "ceilings, 81 views", 81, scene);
-    scene.repeat = 37;
+    scene.repeat = 18;
     compare_under_ceilings(state, "ceilings, no views, minified", 0, scene);
 }
 
@@ -184,7 +156,7 @@ typedef struct component_model {
 static weft_vec3 nearest_of_table(const component_model *model, int stored)
 {
     const weft_material *material = &model->lobes.material;
-    weft_vec3 nearest = vector((const float[]){0, 0, 1});
+    weft_vec3 nearest = stage_vector((const float[]){0, 0, 1});
     for (int i = 0; i < material->view_count; i++)
         if (i == 0 ||
             weft_dot(material->view[i], model->relief.view[stored]) > weft_dot(nearest, model->relief.view[stored]))
@@ -201,7 +173,7 @@ static weft_real opacity_at(const component_model *model, weft_real level, weft_
 /* What each stored view knows of it, in its direction as the table has it. */
 static weft_real opacity_through(const component_model *model, const weft_surface_sample *at)
 {
-    weft_vec3 light = vector(at->light), view = vector(at->view);
+    weft_vec3 light = stage_vector(at->light), view = stage_vector(at->view);
     weft_real level = (weft_real)at->level, u = (weft_real)at->u, v = (weft_real)at->v;
     weft_real share = weft_material_relief_share(&model->relief, level);
     weft_real sum = (1 - share) * opacity_at(model, level, u, v, light, view);
@@ -221,9 +193,9 @@ static weft_real opacity_through(const component_model *model, const weft_surfac
 static weft_rgba evaluate_components(void *context, const weft_surface_sample *at)
 {
     component_model *model = context;
-    weft_rgb value =
-        weft_components_sample_through(&model->maps, &model->relief, model->count, (weft_real)at->level,
-                                       (weft_real)at->u, (weft_real)at->v, vector(at->light), vector(at->view));
+    weft_rgb value = weft_components_sample_through(&model->maps, &model->relief, model->count, (weft_real)at->level,
+                                                    (weft_real)at->u, (weft_real)at->v, stage_vector(at->light),
+                                                    stage_vector(at->view));
     return (weft_rgba){value.r, value.g, value.b, opacity_through(model, at)};
 }
 
@@ -258,7 +230,7 @@ static stage_difference difference_of_components(void **state, weft_components_k
 static void compare_components(void **state, const char *what, weft_components_kind kind, int component_count,
                                int views, weft_scene scene)
 {
-    expect_small(what, difference_of_components(state, kind, component_count, views, FLAT, scene));
+    stage_expect_small(what, difference_of_components(state, kind, component_count, views, FLAT, scene));
 }
 
 static void components_equal_c(void **state)
@@ -274,7 +246,7 @@ static void components_equal_c(void **state)
 static void components_equal_c_between_levels(void **state)
 {
     weft_scene scene = weft_scene_default();
-    scene.repeat = 37;
+    scene.repeat = 18;
     compare_components(state, "components, minified", WEFT_COMPONENTS_OF_LIGHT, 8, 0, scene);
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 1.37;
@@ -357,7 +329,7 @@ static const char *const raw_path = "test_shaders.btf.h5";
 
 static weft_rgba lit_raw(weft_rgb brdf, weft_vec3 light)
 {
-    return lit((weft_rgb){brdf.r * WEFT_PI, brdf.g * WEFT_PI, brdf.b * WEFT_PI}, light, 1);
+    return stage_lit((weft_rgb){brdf.r * WEFT_PI, brdf.g * WEFT_PI, brdf.b * WEFT_PI}, light, 1);
 }
 
 static weft_rgba evaluate_raw(void *context, const weft_surface_sample *at)
@@ -365,7 +337,7 @@ static weft_rgba evaluate_raw(void *context, const weft_surface_sample *at)
     raw_model *model = context;
     weft_rgb brdf = {0};
     weft_error error = {0};
-    weft_vec3 light = vector(at->light), view = vector(at->view);
+    weft_vec3 light = stage_vector(at->light), view = stage_vector(at->view);
     expect_ok(weft_raw_btf_sample(model->raw, (weft_real)at->u, (weft_real)at->v, light, view, &brdf, &error), &error);
     return lit_raw(brdf, light);
 }
@@ -375,8 +347,8 @@ static weft_rgba evaluate_raw_mean(void *context, const weft_surface_sample *at)
     raw_model *model = context;
     weft_rgb brdf = {0};
     weft_error error = {0};
-    weft_vec3 light = vector(at->light);
-    expect_ok(weft_raw_btf_mean(model->raw, light, vector(at->view), &brdf, &error), &error);
+    weft_vec3 light = stage_vector(at->light);
+    expect_ok(weft_raw_btf_mean(model->raw, light, stage_vector(at->view), &brdf, &error), &error);
     return lit_raw(brdf, light);
 }
 
@@ -430,10 +402,12 @@ static void raw_equals_c_interpolation_in_views_and_lights(void **state)
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
     raw_model model = open_raw(s, 8, 81, 81, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF, SIZE_MAX);
-    expect_small("raw 81 x 81", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    stage_expect_small("raw 81 x 81",
+                       stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
     model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, WEFT_RAW_HALF, SIZE_MAX);
-    expect_small("raw 19 x 37", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    stage_expect_small("raw 19 x 37",
+                       stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
 }
 
@@ -444,8 +418,8 @@ static void raw_through_heights_equals_c(void **state)
     scene.level_choice = WEFT_LEVEL_NONE;
     for (int hills = 0; hills < 2; hills++) {
         raw_model model = open_relief(s, 8, hills);
-        expect_small(hills ? "raw through hills" : "raw through a plane",
-                     stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+        stage_expect_small(hills ? "raw through hills" : "raw through a plane",
+                           stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
         close_raw(&model);
     }
 }
@@ -470,7 +444,8 @@ static void raw_with_a_shared_exponent_equals_c_too(void **state)
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
     raw_model model = open_raw(s, 6, 37, 37, WEFT_REFLECTANCE_COSINE, WEFT_RAW_SHARED_EXPONENT, SIZE_MAX);
-    expect_small("raw packed", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    stage_expect_small("raw packed",
+                       stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
 }
 
@@ -481,7 +456,8 @@ static void the_last_raw_level_is_the_mean_of_all_texels(void **state)
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 99;
     raw_model model = open_raw(s, 8, 19, 37, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF, SIZE_MAX);
-    expect_small("raw mean", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw_mean, &model));
+    stage_expect_small("raw mean",
+                       stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw_mean, &model));
     close_raw(&model);
 }
 
@@ -499,175 +475,6 @@ static void a_dataset_that_does_not_fit_loses_its_finest_levels_first(void **sta
     assert_non_null(strstr(error.message, "too many images for graphics memory: 49"));
     weft_raw_texture_free(&texture);
     close_raw(&model);
-}
-
-/* ---- Analytic ---- */
-
-typedef struct cloth_model {
-    weft_weave weave;
-    weft_triangulation *directions;
-    weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT];
-    weft_weave_layout layout;
-    int noise_seed;
-} cloth_model;
-
-static weft_rgb mean_brdf(const cloth_model *model, weft_vec3 light, weft_vec3 view)
-{
-    weft_rgb sum = {0};
-    weft_barycentric l = weft_triangulation_lookup(model->directions, light);
-    weft_barycentric v = weft_triangulation_lookup(model->directions, view);
-    for (int i = 0; i < 9; i++) {
-        if (l.index[i % 3] < 0 || v.index[i / 3] < 0)
-            continue;
-        weft_rgb value = model->mean[v.index[i / 3]][l.index[i % 3]];
-        double weight = l.weight[i % 3] * v.weight[i / 3];
-        sum.r += weight * value.r;
-        sum.g += weight * value.g;
-        sum.b += weight * value.b;
-    }
-    return sum;
-}
-
-/* How much of the intensity noise is left to its mean. */
-static double resolved_noise(const cloth_model *model, const weft_weave_point *place, double level)
-{
-    const weft_segment *segment = &model->weave.yarn[place->yarn].segment;
-    double side = fmin(segment->width, segment->length) / model->weave.fineness;
-    return model->weave.fineness > 0 ? fmin(fmax((level - log2(side) + 1) / 2, 0), 1) : 0;
-}
-
-/* log2 of the width of the footprint in cells; a long one counts as a quarter of its length at least. */
-static double width_of_footprint(const weft_surface_sample *at)
-{
-    const float *s = at->sides;
-    double longer = fmax(hypot(s[0], s[1]), hypot(s[2], s[3])), area = fabs((double)s[0] * s[3] - (double)s[1] * s[2]);
-    return longer > 0 ? log2(fmax(area / longer, longer / 4)) : (double)at->level;
-}
-
-/* At a place of the footprint, -1/2 to 1/2 of its sides. */
-static weft_rgb cloth_at(const cloth_model *model, const weft_surface_sample *at, double across, double up)
-{
-    const weft_weave_layout *layout = &model->layout;
-    const float *s = at->sides;
-    double u = (double)at->u + (across * s[0] + up * s[2]) / (layout->tiles_u * model->weave.tile_width);
-    double v = (double)at->v + (across * s[1] + up * s[3]) / (layout->tiles_v * model->weave.tile_height);
-    bool noisy = model->noise_seed != 0;
-    double U = (u - floor(u)) * layout->tiles_u - layout->corner_u + noisy * floor(u) * ceil(layout->tiles_u);
-    double V = (v - floor(v)) * layout->tiles_v - layout->corner_v + noisy * floor(v) * ceil(layout->tiles_v);
-    weft_weave_point place = weft_weave_locate(&model->weave, U, V, (uint64_t)model->noise_seed);
-    place.intensity += (1 - place.intensity) * resolved_noise(model, &place, (double)at->level);
-    return weft_weave_brdf(&model->weave, &place, vector(at->light), vector(at->view));
-}
-
-static int places_along(float x, float y)
-{
-    return (int)fmin(fmax(ceil(2 * hypot((double)x, (double)y)), 1), 3);
-}
-
-static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
-{
-    cloth_model *model = context;
-    weft_vec3 light = vector(at->light), view = vector(at->view);
-    if (!(light.z > 0))
-        return (weft_rgba){0, 0, 0, 1};
-    double fade = fmin(fmax((width_of_footprint(at) + 1) / 2, 0), 1);
-    int across = places_along(at->sides[0], at->sides[1]), up = places_along(at->sides[2], at->sides[3]);
-    weft_rgb far = mean_brdf(model, light, view), sum = {fade * far.r, fade * far.g, fade * far.b};
-    for (int i = 0; i < across * up; i++) {
-        weft_rgb near = cloth_at(model, at, (i % across + 0.5) / across - 0.5, (i / across + 0.5) / up - 0.5);
-        double weight = (1 - fade) / (across * up);
-        sum.r += weight * near.r;
-        sum.g += weight * near.g;
-        sum.b += weight * near.b;
-    }
-    return lit((weft_rgb){WEFT_PI * sum.r, WEFT_PI * sum.g, WEFT_PI * sum.b}, light, 1);
-}
-
-/* Means of the tile: exact ones, but under noise those that test_weave_texels.c holds against the noisy texture. */
-static void tabulate_means(cloth_model *model, const weft_vec3 direction[WEFT_UBO81_COUNT])
-{
-    weft_weave_texels texels;
-    weft_error error = {0};
-    expect_ok(weft_weave_texels_of(&model->weave, &texels, &error), &error);
-    for (int i = 0; i < WEFT_UBO81_COUNT * WEFT_UBO81_COUNT; i++) {
-        int view = i / WEFT_UBO81_COUNT, light = i % WEFT_UBO81_COUNT;
-        const float *noisy = texels.noisy_mean ? texels.noisy_mean[i] : NULL;
-        model->mean[view][light] = model->noise_seed && noisy
-                                       ? (weft_rgb){(weft_real)noisy[0], (weft_real)noisy[1], (weft_real)noisy[2]}
-                                       : weft_weave_mean_brdf(&model->weave, direction[light], direction[view]);
-    }
-    weft_weave_texels_free(&texels);
-}
-
-static void compare_weave(void **state, const char *name, double repeat, int noise_seed)
-{
-    stage *s = *state;
-    weft_error error = {0};
-    char path[512], warning[WEFT_MESSAGE_SIZE];
-    cloth_model *model = calloc(1, sizeof *model);
-    weft_vec3 direction[WEFT_UBO81_COUNT];
-    for (int i = 0; i < WEFT_UBO81_COUNT; i++)
-        direction[i] = weft_direction_of_angles(weft_ubo81_angles(i));
-    snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
-    expect_ok(weft_weave_read(path, NULL, 0, &model->weave, warning, &error), &error);
-    expect_ok(weft_triangulation_build(direction, WEFT_UBO81_COUNT, &model->directions, &error), &error);
-    model->noise_seed = noise_seed;
-    tabulate_means(model, direction);
-    model->layout = (weft_weave_layout){2.25, 2, 0.3, -0.4};
-    expect_ok(weft_player_set_weave(s->player, &model->weave, &model->layout, &error), &error);
-    weft_scene scene = weft_scene_default();
-    scene.repeat = repeat;
-    scene.noise_seed = noise_seed;
-    expect_small(name, stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_cloth, model));
-    weft_triangulation_free(model->directions);
-    weft_weave_free(&model->weave);
-    free(model);
-}
-
-static void analytic_equals_c_for_staple_and_filament_yarns(void **state)
-{
-    compare_weave(state, "cotton_denim", 4, 0);
-    compare_weave(state, "silk_charmeuse", 2, 0);
-}
-
-static void analytic_equals_c_where_the_texture_fades_to_the_mean(void **state)
-{
-    compare_weave(state, "wool_gabardine", 15, 0);
-    compare_weave(state, "polyester_lining", 60, 0);
-}
-
-static void noise_of_both_kinds_equals_c_near_and_far(void **state)
-{
-    compare_weave(state, "cotton_denim", 4, 7);
-    compare_weave(state, "silk_shantung", 3, 7);
-    compare_weave(state, "cotton_twill", 12, 1000000007);
-    compare_weave(state, "polyester_lining", 40, 3);
-}
-
-static weft_rgba evaluate_threads(void *context, const weft_surface_sample *at)
-{
-    weft_vec3 light = vector(at->light);
-    weft_rgb brdf = weft_microcylinder_brdf(context, WEFT_CLOTH_BY_AREA, light, vector(at->view));
-    return lit((weft_rgb){WEFT_PI * brdf.r, WEFT_PI * brdf.g, WEFT_PI * brdf.b}, light, 1);
-}
-
-static void microcylinders_equal_c(void **state)
-{
-    static const char *const name[] = {"plain_matte", "satin_face", "shot"};
-    stage *s = *state;
-    weft_error error = {0};
-    weft_scene scene = weft_scene_default();
-    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
-        char path[512];
-        weft_microcylinder_description cloth;
-        snprintf(path, sizeof path, "%s/microcylinder/%s.mc", WEFT_ASSETS, name[i]);
-        expect_ok(weft_microcylinder_read(path, NULL, 0, &cloth, &error), &error);
-        expect_ok(weft_player_set_threads(s->player, &cloth.cloth, &error), &error);
-        weft_prepared_cloth prepared = weft_microcylinder_prepare(&cloth.cloth);
-        expect_small(name[i],
-                     stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_threads, &prepared));
-        scene.light[0].direction.theta_rad = weft_rad_of_deg(80);
-    }
 }
 
 /* The plane from above: u and v run over it as often as square texels fit. */
@@ -721,10 +528,6 @@ int test_shaders(void)
         cmocka_unit_test(raw_with_a_shared_exponent_equals_c_too),
         cmocka_unit_test(the_last_raw_level_is_the_mean_of_all_texels),
         cmocka_unit_test(a_dataset_that_does_not_fit_loses_its_finest_levels_first),
-        cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
-        cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
-        cmocka_unit_test(noise_of_both_kinds_equals_c_near_and_far),
-        cmocka_unit_test(microcylinders_equal_c),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
