@@ -11,12 +11,12 @@ if [ "${4-}" != inside ]; then
     rm -rf play && "$make" test_render play
     "$weft" play --help | grep -q '^Example: weft play' || { "$weft" play --help; exit 1; }
     # No window can be opened twice by accident: the counted run ends by itself.
-    xvfb-run -a -s "-screen 0 800x600x24" "$weft" play play/cloth.weft --size 160x120 --frames 5 | grep "5 frames"
+    xvfb-run -a -s "-screen 0 800x600x24" "$weft" play play/cloth.weft --environment none --size 160x120 --frames 5 | grep "5 frames"
     exec timeout 300 xvfb-run -a -s "-screen 0 800x600x24" "$0" "$weft" "$make" "$weaves" inside
 fi
 
 cd play
-open_window cloth.weft --environment none --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240
+open_window cloth.weft --environment none --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 160x120 --samples 1
 
 next=none
 shoot() { # WHAT: takes a screenshot that must differ from the one before, within ten seconds
@@ -31,7 +31,7 @@ shoot() { # WHAT: takes a screenshot that must differ from the one before, withi
 }
 
 drag() { # BUTTON DX DY
-    xdotool mousemove --window "$window" 160 120
+    xdotool mousemove --window "$window" 80 60
     sleep 0.1
     xdotool mousedown "$1"
     sleep 0.1
@@ -60,7 +60,7 @@ shoot "the material was written again"
 head -c 100 cloth.weft >cut.weft && mv cut.weft cloth.weft
 sleep 2
 kill -0 $player || { echo "a material that was cut while it was shown ended the player"; exit 1; }
-xdotool windowsize "$window" 400 300
+xdotool windowsize "$window" 200 150
 shoot "resize"
 xdotool key q
 for _ in $(seq 300); do
