@@ -152,7 +152,7 @@ expect_no_file other-report
 
 # Lights and meshes.
 expect_one_line 2 "below the horizon" render good.weft --light 120,0 -o out.png
-expect_ok render good.weft --light 90,0 --size 32x32 -o dark.png
+expect_ok render good.weft --light 90,0 --size 32x32 --samples 1 -o dark.png
 expect_one_line 1 "drape, sphere, plane" render good.weft --mesh cube -o out.png
 expect_no_file out.png
 
@@ -170,11 +170,11 @@ expect_one_line 1 "drape, sphere, plane" play good.weft --mesh folder
 # What can be shown is shown, whatever it is.
 for file in good.btf.h5 "$weave" good.weft; do
     rm -f shown.png
-    expect_ok render "$file" --size 32x32 -o shown.png
+    expect_ok render "$file" --environment none --size 32x32 --samples 1 -o shown.png
     [ -s shown.png ] || fail "$file is not shown"
 done
-expect_ok render good.btf.h5 --size 32x32 --samples 1 -o by-place.png
-expect_ok render --raw good.btf.h5 --size 32x32 --samples 1 -o by-name.png
+expect_ok render good.btf.h5 --environment none --size 32x32 --samples 1 -o by-place.png
+expect_ok render --raw good.btf.h5 --environment none --size 32x32 --samples 1 -o by-name.png
 [ "$(convert by-place.png rgb:- | cksum)" = "$(convert by-name.png rgb:- | cksum)" ] || fail "a dataset by its place is another picture"
 expect_one_line 2 "of one kind" render --raw good.btf.h5 good.btf.h5 -o out.png
 echo "bad_usage.sh: $passed checks"

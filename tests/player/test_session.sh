@@ -19,7 +19,7 @@ panel=330
 table=160x40+145+200 # of a picture of 450 x 720: the top of the drape
 "$weft" compress cloth.btf.h5 -o other.weft --lobes 1 --quiet
 head -c 100 cloth.weft >broken.weft
-open_window cloth.weft --environment none --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 780x720 --no-labels
+open_window cloth.weft --environment none --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 780x720 --samples 1 --no-labels
 
 fail() {
     import -window root failed.png
