@@ -210,12 +210,12 @@ static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_
 static weft_code write_poses(const calibrate_command *command, const weft_axes_sightings *sightings,
                              const weft_axes_report *report, weft_error *error)
 {
-    weft_poses_shot *shot = calloc((size_t)sightings->count, sizeof *shot);
+    weft_lens_photograph *shot = calloc((size_t)sightings->count, sizeof *shot);
     if (!shot)
         return weft_fail_memory(error, "shots", (size_t)sightings->count * sizeof *shot);
     for (int i = 0; i < sightings->count; i++) {
         const weft_axes_shot *s = &sightings->shot[i];
-        shot[i] = (weft_poses_shot){s->name, s->left_out[0] ? s->left_out : NULL};
+        shot[i] = (weft_lens_photograph){s->name, s->left_out[0] ? s->left_out : NULL};
     }
     weft_code code =
         weft_poses_write(command->output, &report->file, shot, sightings->count,

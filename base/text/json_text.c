@@ -66,3 +66,47 @@ weft_code weft_json_read(const char *path, size_t limit, json_t **root, weft_err
     free(text);
     return code;
 }
+
+static weft_code check_kind(const json_t *root, const char *path, const weft_json_kind *kind, weft_error *error)
+{
+    const json_t *version = json_object_get(root, kind->member);
+    if (!json_is_integer(version))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s", path, kind->is_none);
+    if (json_integer_value(version) != kind->version)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s of version %lld, this program reads version %d", path,
+                         kind->is_one, (long long)json_integer_value(version), kind->version);
+    return WEFT_OK;
+}
+
+weft_code weft_json_read_kind(const char *path, size_t limit, const weft_json_kind *kind, json_t **root,
+                              weft_error *error)
+{
+    WEFT_TRY(weft_json_read(path, limit, root, error));
+    weft_code code = check_kind(*root, path, kind, error);
+    if (code != WEFT_OK)
+        json_decref(*root);
+    return code;
+}
+
+weft_code weft_json_write(const char *path, json_t *root, size_t flags, weft_error *error)
+{
+    char *text = root ? json_dumps(root, flags) : NULL;
+    json_decref(root);
+    if (!text)
+        return weft_fail_memory(error, path, 0);
+    weft_code code = weft_write_file(path, text, strlen(text), error);
+    free(text);
+    return code;
+}
+
+char *weft_json_with_member(const char *object, const char *name, json_t *value, size_t flags)
+{
+    json_t *root = json_loads(object, 0, NULL);
+    if (root)
+        weft_json_put(&root, name, value);
+    else
+        json_decref(value);
+    char *text = root ? json_dumps(root, flags) : NULL;
+    json_decref(root);
+    return text;
+}

@@ -29,8 +29,27 @@ void weft_json_append(json_t **list, json_t *value);
 /* A number; null where it is not finite, because JSON has no infinity. NULL where memory is short. */
 json_t *weft_json_number(double value);
 
+/* Writes JSON atomically with jansson's `flags`. Takes `root`; NULL is a lack of memory. Errors: WEFT_SYSTEM;
+ * WEFT_BAD_USAGE where the path names no file. */
+weft_code weft_json_write(const char *path, json_t *root, size_t flags, weft_error *error);
+
+/* The text of an object with one more member, which is taken. The caller frees it; NULL where memory is short. */
+char *weft_json_with_member(const char *object, const char *name, json_t *value, size_t flags);
+
 /* Reads a JSON file; an object that names a key twice is refused. The caller owns *root. Errors: WEFT_BAD_INPUT where
  * the file is missing, larger than `limit` bytes, or no JSON, with line and column. */
 weft_code weft_json_read(const char *path, size_t limit, json_t **root, weft_error *error);
+
+/* A kind of JSON file: the member that holds its version, the version, and how messages name it. */
+typedef struct weft_json_kind {
+    const char *member;
+    int version;
+    const char *is_none; /* "is no lens" */
+    const char *is_one;  /* "is a lens" */
+} weft_json_kind;
+
+/* The same for a file of a kind. Errors: WEFT_BAD_INPUT also for another kind or version. */
+weft_code weft_json_read_kind(const char *path, size_t limit, const weft_json_kind *kind, json_t **root,
+                              weft_error *error);
 
 #endif

@@ -17,10 +17,7 @@ weft_code weft_derived_dataset_check(const weft_dataset *dataset, const char *ou
 weft_code weft_derived_dataset_finish(weft_dataset_block_writer *writer, const weft_dataset_layout *source,
                                       const char *name, json_t *made, weft_error *error)
 {
-    json_t *provenance = json_loads(source->provenance, 0, NULL);
-    weft_json_put(&provenance, name, made);
-    char *text = provenance ? json_dumps(provenance, JSON_COMPACT) : NULL;
-    json_decref(provenance);
+    char *text = weft_json_with_member(source->provenance, name, made, JSON_COMPACT);
     if (!text) {
         weft_dataset_block_writer_abandon(writer);
         return weft_fail_memory(error, "provenance", 0);

@@ -44,16 +44,6 @@ static weft_code copy_file(const char *path, const char *copy, const char *outpu
     return result == 0 ? WEFT_OK : weft_fail_errno(error, "write", output);
 }
 
-/* The provenance with what was done now; NULL where memory is short. The caller frees. */
-static char *new_provenance(const char *provenance, const char *made)
-{
-    json_t *object = json_loads(provenance, 0, NULL);
-    weft_json_put(&object, "relief", json_loads(made, 0, NULL));
-    char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
-    json_decref(object);
-    return text;
-}
-
 /* What the readers of `path` would say of these heights; and its provenance with `made` in it. */
 static weft_code check(const char *path, double plane_mm, const weft_dataset_heights *heights, const char *made,
                        char **provenance, weft_error *error)
@@ -66,7 +56,7 @@ static weft_code check(const char *path, double plane_mm, const weft_dataset_hei
     if (code == WEFT_OK && heights)
         code = weft_dataset_heights_check(&layout, heights, path, WEFT_BAD_INPUT, error);
     if (code == WEFT_OK) {
-        *provenance = new_provenance(layout.provenance, made);
+        *provenance = weft_json_with_member(layout.provenance, "relief", json_loads(made, 0, NULL), JSON_COMPACT);
         code = *provenance ? WEFT_OK : weft_fail_memory(error, "provenance", 0);
     }
     weft_dataset_close(dataset);

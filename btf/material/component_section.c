@@ -41,7 +41,7 @@ static void write_shape(const weft_components *components, uint8_t *bytes)
                               (uint32_t)components->view_count, (uint32_t)components->image_count,
                               (uint32_t)components->light_side, (uint32_t)components->view_side};
     const float real[] = {components->light_smoothness, components->view_smoothness, components->least_cosine,
-                          components->doubt};
+                          components->view_variance_threshold};
     memset(bytes, 0, 4 * HEADER_WORDS);
     memcpy(bytes, whole, sizeof whole);
     memcpy(bytes + sizeof whole, real, sizeof real);
@@ -87,7 +87,7 @@ static weft_components shape_of(const uint8_t *bytes)
                              .light_smoothness = real[0],
                              .view_smoothness = real[1],
                              .least_cosine = real[2],
-                             .doubt = real[3]};
+                             .view_variance_threshold = real[3]};
 }
 
 static const char *fault_of_directions(const float *xyz, int count)

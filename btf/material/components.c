@@ -59,7 +59,7 @@ const char *weft_components_fault_of_shape(const weft_components *shape)
     if (!(shape->light_smoothness > 0 && shape->light_smoothness < 1e6f && shape->view_smoothness > 0 &&
           shape->view_smoothness < 1e6f && shape->least_cosine > 0 && shape->least_cosine <= 1))
         return "holds a smoothness or a cosine out of range";
-    if (!(shape->doubt >= 0 && shape->doubt < 1e6f))
+    if (!(shape->view_variance_threshold >= 0 && shape->view_variance_threshold < 1e6f))
         return "holds a view-variance threshold out of range";
     return NULL;
 }
@@ -81,7 +81,7 @@ weft_code weft_components_create(const weft_components *shape, int width, int he
                                     .view_side = shape->view_side,
                                     .light_smoothness = shape->light_smoothness,
                                     .view_smoothness = shape->view_smoothness,
-                                    .doubt = shape->doubt,
+                                    .view_variance_threshold = shape->view_variance_threshold,
                                     .least_cosine = shape->least_cosine,
                                     .level_count = level_count};
     weft_code code = allocate_shared(components, error);

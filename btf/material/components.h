@@ -65,13 +65,14 @@ typedef struct weft_components {
     int view_side;          /* of those over v */
     float light_smoothness; /* of the same maps */
     float view_smoothness;
-    float least_cosine; /* of the lights: nearer the horizon r falls in proportion to l_z, 0 < it <= 1 */
-    float doubt;        /* variance of a node over l or h at which its view counts a quarter; 0: all count alike */
-    float *view;        /* [view_count][3] unit, z > 0 */
-    float *light;       /* [image_count][3] unit, z > 0; view by view */
-    uint32_t *first;    /* [view_count + 1] the images of view i are first[i] .. first[i + 1] - 1 */
-    float *scale;       /* [component_count] what a coefficient of 1 and a value of 1 stand for */
-    weft_half *value;   /* [image_count][component_count][3] B_k, divided by its scale */
+    float least_cosine;            /* of the lights: nearer the horizon r falls in proportion to l_z, 0 < it <= 1 */
+    float view_variance_threshold; /* variance of a node over l or h at which its view counts a quarter; 0: all count
+                                      alike */
+    float *view;                   /* [view_count][3] unit, z > 0 */
+    float *light;                  /* [image_count][3] unit, z > 0; view by view */
+    uint32_t *first;               /* [view_count + 1] the images of view i are first[i] .. first[i + 1] - 1 */
+    float *scale;                  /* [component_count] what a coefficient of 1 and a value of 1 stand for */
+    weft_half *value;              /* [image_count][component_count][3] B_k, divided by its scale */
     int level_count;
     weft_components_level level[WEFT_COMPONENTS_MAX_LEVELS];
 } weft_components;

@@ -191,6 +191,14 @@ int weft_section_levels(const weft_section_kind *kind, const weft_material *mate
     return kind->of_levels ? material->level_count : 1;
 }
 
+uint64_t weft_section_size(const weft_section_kind *kind, const weft_material *material, int level)
+{
+    if (!kind->array)
+        return kind->size(material, level);
+    weft_section_array array = kind->array(material, level);
+    return (uint64_t)array.count * array.bytes;
+}
+
 static int kind_of(const weft_material_file *file, const char type[5])
 {
     int kind = 0;
@@ -221,7 +229,7 @@ static weft_code check_size(const weft_material_file *file, const weft_section_k
     const char *fault = NULL;
     if (kind->check)
         fault = kind->check(file, material, section);
-    else if (!kind->is_free && section->decoded_size != kind->size(material, (int)section->level))
+    else if (!kind->is_free && section->decoded_size != weft_section_size(kind, material, (int)section->level))
         fault = "its size does not fit the material";
     return fault ? weft_fail_section(file, section, error, fault) : WEFT_OK;
 }

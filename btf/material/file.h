@@ -49,10 +49,27 @@ typedef struct weft_section {
 
 typedef struct weft_material_file weft_material_file;
 
-/* Takes decoded bytes into the material, whose arrays are allocated. `fault` receives what is wrong with them ("holds
- * ..."). Errors: WEFT_BAD_INPUT where something is, WEFT_SYSTEM. */
-typedef weft_code weft_section_load(weft_material_file *file, weft_material *material, const weft_section *section,
-                                    const uint8_t *bytes, const char **fault, weft_error *error);
+/* A section as it is read. */
+typedef struct weft_section_reading {
+    weft_material_file *file;
+    weft_material *material; /* its arrays are allocated */
+    const weft_section *section;
+    const uint8_t *bytes; /* decoded */
+    const char *fault;    /* receives what is wrong with them ("holds ..."); else NULL */
+} weft_section_reading;
+
+/* Takes the bytes into the material. Errors: WEFT_BAD_INPUT where something is wrong with them, WEFT_SYSTEM. */
+typedef weft_code weft_section_load(weft_section_reading *r, weft_error *error);
+
+/* Numbers in memory that a section holds: `count` pieces of `bytes`, each `stride` behind the one before, the first
+ * `offset` behind `base`. */
+typedef struct weft_section_array {
+    void *base; /* NULL until it is allocated */
+    size_t offset, count, bytes, stride;
+} weft_section_array;
+
+/* What is wrong with the decoded bytes of a section ("holds ..."), or NULL. Pure. */
+typedef const char *weft_section_fault(const weft_material *material, int level, const uint8_t *bytes, size_t size);
 
 /* A kind of section. Kinds are read in the order of their list. */
 typedef struct weft_section_kind {
@@ -62,9 +79,11 @@ typedef struct weft_section_kind {
     uint32_t bars;    /* and none of these */
     uint32_t reveals; /* version 1 has no features in its header: this kind of section shows that they are there */
     bool is_free;     /* of no size that the header tells; what loads it checks */
+    weft_section_array (*array)(const weft_material *material, int level); /* in place of size, load and store */
     uint64_t (*size)(const weft_material *material, int level);
     /* In place of the size alone, before anything is allocated: what is wrong with it, or NULL. */
     const char *(*check)(const weft_material_file *file, const weft_material *material, const weft_section *section);
+    weft_section_fault *fault; /* NULL: none can be, or `load` finds it */
     weft_section_load *load;
     void (*store)(const weft_material *material, int level, uint8_t *bytes); /* to bytes [size]; version 2 */
 } weft_section_kind;
@@ -107,6 +126,9 @@ bool weft_section_is_there(const weft_section_kind *kind, uint32_t features);
 /* Number of sections of a kind that is there. Pure. */
 int weft_section_levels(const weft_section_kind *kind, const weft_material *material);
 
+/* Decoded bytes of a section of a kind that is not free. Pure. */
+uint64_t weft_section_size(const weft_section_kind *kind, const weft_material *material, int level);
+
 /* The section of a kind, by its index, and level; it must have been found. */
 static inline const weft_section *weft_file_section(const weft_material_file *file, int kind, int level)
 {
@@ -132,23 +154,25 @@ weft_code weft_material_allocate(weft_material *material, weft_error *error);
 /* ---- What both versions have ---- */
 
 uint64_t weft_size_of_views(const weft_material *material, int level);
-uint64_t weft_size_of_frames(const weft_material *material, int level);
-uint64_t weft_size_of_opacity(const weft_material *material, int level);
 size_t weft_texel_count(const weft_material *material, int level);
 
 const char *weft_check_metadata(const weft_material_file *file, const weft_material *material,
                                 const weft_section *section);
 
-weft_section_load weft_load_metadata, weft_load_views, weft_load_frames, weft_load_opacity, weft_load_coefficients,
-    weft_load_heights, weft_load_visibility;
+weft_section_load weft_load_metadata, weft_load_views, weft_load_heights, weft_load_visibility;
+weft_section_fault weft_fault_of_errors, weft_fault_of_directions, weft_fault_of_coefficients;
+
+weft_section_array weft_array_of_frames(const weft_material *material, int level);
+weft_section_array weft_array_of_opacity(const weft_material *material, int level);
+weft_section_array weft_array_of_coefficients(const weft_material *material, int level);
 
 /* What is wrong with half floats, of which every fourth, or all of them, must not be negative; NULL: nothing. Pure. */
-const char *weft_fault_of_halves(const weft_half *half, size_t count, bool all_positive);
+const char *weft_fault_of_halves(const uint8_t *bytes, size_t size, bool all_positive);
 
-/* Errors of a level from [WEFT_FORMAT_ERRORS]; what is wrong with them or NULL. Pure. */
-const char *weft_take_errors(const double *value, weft_error_summary *error);
+/* Errors of a level from f64 [WEFT_FORMAT_ERRORS]. Pure. */
+weft_error_summary weft_take_errors(const uint8_t *bytes);
 
-/* Directions of the upper hemisphere from xyz [count][3]; what is wrong with them or NULL. Pure. */
-const char *weft_take_directions(const float *xyz, int count, weft_vec3 *direction);
+/* Directions from f32 [count][3]. */
+void weft_take_directions(const uint8_t *bytes, int count, weft_vec3 *direction);
 
 #endif

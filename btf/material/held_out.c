@@ -67,23 +67,6 @@ weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *materi
     return weft_material_put_metadata(material, "certificate", weft_certificate_pack(&result->certificate), error);
 }
 
-/* Takes the object. */
-static size_t bytes_of(json_t *object)
-{
-    size_t size = object ? json_dumpb(object, NULL, 0, JSON_COMPACT) : 0;
-    json_decref(object);
-    return size;
-}
-
-weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error)
-{
-    static const char names[] = ",\"held_out\":,\"certificate\":";
-    size_t size = bytes_of(weft_hold_out_to_json(result)),
-           certificate = result->has_certificate ? bytes_of(weft_certificate_pack(&result->certificate)) : 1;
-    *bytes = size + certificate + sizeof names;
-    return size > 0 && certificate > 0 ? WEFT_OK : weft_fail_memory(error, "metadata of the material", 0);
-}
-
 /* ---- From JSON ---- */
 
 static bool read_error(const json_t *object, weft_error_summary *e)

@@ -57,9 +57,6 @@ json_t *weft_hold_out_to_json(const weft_hold_out *result);
 /* Puts it into the metadata of a material, where weft_hold_out_read finds it. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *material, weft_error *error);
 
-/* Bytes that weft_hold_out_store adds to the file of a material, at most. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error);
-
 /* Reads it from the metadata of a material, with the certificate; *found is false where there is none, or none that
  * this version understands. Errors: WEFT_BAD_INPUT for a damaged certificate, WEFT_SYSTEM for memory. */
 weft_code weft_hold_out_read(const char *metadata, bool *found, weft_hold_out *result, weft_error *error);

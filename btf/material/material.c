@@ -77,21 +77,13 @@ static weft_code allocate_level(const weft_material *material, weft_material_lev
     return allocate_array(codes * (uint64_t)material->light_count, &level->light_table, error);
 }
 
-static weft_code allocate_directions(int count, weft_vec3 **directions, weft_error *error)
-{
-    if (count == 0)
-        return WEFT_OK;
-    *directions = calloc((size_t)count, sizeof **directions);
-    return *directions ? WEFT_OK : weft_fail_memory(error, "directions", (size_t)count * sizeof **directions);
-}
-
 static weft_code allocate_all(weft_material *material, weft_error *error)
 {
     material->metadata = strdup("{}");
     if (!material->metadata)
         return weft_fail_memory(error, "material", 3);
-    WEFT_TRY(allocate_directions(material->view_count, &material->view, error));
-    WEFT_TRY(allocate_directions(material->light_count, &material->light, error));
+    WEFT_TRY(allocate_array((uint64_t)material->view_count * sizeof *material->view, &material->view, error));
+    WEFT_TRY(allocate_array((uint64_t)material->light_count * sizeof *material->light, &material->light, error));
     for (int k = 0; k < material->level_count; k++)
         WEFT_TRY(allocate_level(material, &material->level[k], error));
     return WEFT_OK;

@@ -17,18 +17,38 @@ static weft_code decode(const weft_material_file *file, const weft_section *sect
     return WEFT_OK;
 }
 
+static void fill_array(weft_section_array array, const uint8_t *bytes)
+{
+    uint8_t *to = (uint8_t *)array.base + array.offset;
+    for (size_t i = 0; i < array.count; i++)
+        memcpy(to + i * array.stride, bytes + i * array.bytes, array.bytes);
+}
+
+static weft_code take(const weft_section_kind *kind, weft_section_reading *r, weft_error *error)
+{
+    int level = (int)r->section->level;
+    if (kind->fault)
+        r->fault = kind->fault(r->material, level, r->bytes, r->section->decoded_size);
+    if (r->fault)
+        return WEFT_BAD_INPUT;
+    if (!kind->array)
+        return kind->load(r, error);
+    fill_array(kind->array(r->material, level), r->bytes);
+    return WEFT_OK;
+}
+
 static weft_code read_section(weft_material_file *file, weft_material *material, const weft_section_kind *kind,
                               const weft_section *section, weft_error *error)
 {
     uint8_t *bytes = malloc(section->decoded_size + 1);
-    const char *fault = NULL;
+    weft_section_reading reading = {file, material, section, bytes, NULL};
     if (!bytes)
         return weft_fail_memory(error, "section of the material", section->decoded_size + 1);
     weft_code code = decode(file, section, bytes, error);
     if (code == WEFT_OK)
-        code = kind->load(file, material, section, bytes, &fault, error);
+        code = take(kind, &reading, error);
     free(bytes);
-    return fault ? weft_fail_section(file, section, error, fault) : code;
+    return reading.fault ? weft_fail_section(file, section, error, reading.fault) : code;
 }
 
 static weft_code read_kind(weft_material_file *file, weft_material *material, int index, weft_error *error)

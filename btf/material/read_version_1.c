@@ -45,7 +45,7 @@ static uint64_t size_of_lobes(const weft_material *material, int level)
 
 static uint64_t size_of_table(const weft_material *material, int level)
 {
-    return 4 * weft_size_of_opacity(material, level);
+    return 4 * (uint64_t)material->view_count * weft_texel_count(material, level);
 }
 
 static uint64_t size_of_light_table(const weft_material *material, int level)
@@ -60,34 +60,37 @@ static uint64_t size_of_errors(const weft_material *material, int level)
     return WEFT_FORMAT_ERRORS * sizeof(double);
 }
 
-static uint64_t size_of_ceilings(const weft_material *material, int level)
+/* Before components are allocated they have sizes alone. */
+static weft_section_array array_of_ceilings(const weft_material *material, int level)
 {
-    return weft_ceiling_count(material->level[level].width, material->level[level].height);
+    const weft_components *components = material->components;
+    size_t count = weft_ceiling_count(material->level[level].width, material->level[level].height);
+    return (weft_section_array){components ? components->level[level].ceiling : NULL, 0, count, 1, 1};
 }
 
-static uint64_t size_of_floors(const weft_material *material, int level)
+static weft_section_array array_of_floors(const weft_material *material, int level)
 {
-    return 3 * size_of_ceilings(material, level);
+    const weft_components *components = material->components;
+    weft_section_array array = array_of_ceilings(material, level);
+    return (weft_section_array){components ? components->level[level].floor : NULL, 0, array.count, 3, 3};
 }
 
 /* ---- Which parts a texel has ---- */
 
 enum { MODEL_CODES = 64 };
 
-static weft_code load_models(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_models(weft_section_reading *r, weft_error *error)
 {
-    (void)material;
-    for (size_t i = 0; i < section->decoded_size; i++) {
-        if (bytes[i] >= MODEL_CODES)
-            *fault = "holds an unknown model";
+    for (size_t i = 0; i < r->section->decoded_size; i++) {
+        if (r->bytes[i] >= MODEL_CODES)
+            r->fault = "holds an unknown model";
     }
-    if (*fault)
+    if (r->fault)
         return WEFT_BAD_INPUT;
-    file->model[section->level] = malloc(section->decoded_size);
-    if (!file->model[section->level])
-        return weft_fail_memory(error, "models of texels", section->decoded_size);
-    memcpy(file->model[section->level], bytes, section->decoded_size);
+    r->file->model[r->section->level] = malloc(r->section->decoded_size);
+    if (!r->file->model[r->section->level])
+        return weft_fail_memory(error, "models of texels", r->section->decoded_size);
+    memcpy(r->file->model[r->section->level], r->bytes, r->section->decoded_size);
     return WEFT_OK;
 }
 
@@ -181,68 +184,60 @@ static const char *check_light_table(const weft_material_file *file, const weft_
     return check_compact(file, section, size_of_light_table(material, (int)section->level));
 }
 
-static weft_code load_planes(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_planes(weft_section_reading *r, weft_error *error)
 {
     (void)error;
-    planes p = planes_of(material, section);
-    const uint8_t *model = file->model[section->level];
-    size_t texels = weft_texel_count(material, (int)section->level);
-    if (section->decoded_size == p.plane_count * p.texel_bytes * texels)
-        memcpy(p.texels, bytes, section->decoded_size);
-    else if (section->decoded_size == compact_size(&p, model, texels))
-        expand(&p, model, texels, bytes);
+    planes p = planes_of(r->material, r->section);
+    const uint8_t *model = r->file->model[r->section->level];
+    size_t texels = weft_texel_count(r->material, (int)r->section->level);
+    if (r->section->decoded_size == p.plane_count * p.texel_bytes * texels)
+        memcpy(p.texels, r->bytes, r->section->decoded_size);
+    else if (r->section->decoded_size == compact_size(&p, model, texels))
+        expand(&p, model, texels, r->bytes);
     else
-        *fault = "its size does not fit the models of its level";
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+        r->fault = "its size does not fit the models of its level";
+    return r->fault ? WEFT_BAD_INPUT : WEFT_OK;
 }
 
 /* ---- Lobes ---- */
 
-/* The fourth number was unused. */
-static weft_code load_diffuse(weft_material_file *file, weft_material *material, const weft_section *section,
-                              const uint8_t *bytes, const char **fault, weft_error *error)
+static const char *fault_of_diffuse(const weft_material *material, int level, const uint8_t *bytes, size_t size)
 {
-    (void)file;
+    (void)material;
+    (void)level;
+    return weft_fault_of_halves(bytes, size, true);
+}
+
+/* The fourth number was unused. */
+static weft_code load_diffuse(weft_section_reading *r, weft_error *error)
+{
     (void)error;
-    weft_half *diffuse = material->level[section->level].diffuse;
-    size_t count = section->decoded_size / sizeof *diffuse;
-    *fault = weft_fault_of_halves((const weft_half *)(const void *)bytes, count, true);
-    if (*fault)
-        return WEFT_BAD_INPUT;
-    memcpy(diffuse, bytes, section->decoded_size);
-    for (size_t i = 3; i < count; i += 4)
+    weft_half *diffuse = r->material->level[r->section->level].diffuse;
+    memcpy(diffuse, r->bytes, r->section->decoded_size);
+    for (size_t i = 3; i < r->section->decoded_size / sizeof *diffuse; i += 4)
         diffuse[i] = 0;
     return WEFT_OK;
 }
 
-static weft_code load_lobes(weft_material_file *file, weft_material *material, const weft_section *section,
-                            const uint8_t *bytes, const char **fault, weft_error *error)
+static const char *fault_of_lobes(const weft_material *material, int level, const uint8_t *bytes, size_t size)
 {
-    *fault =
-        weft_fault_of_halves((const weft_half *)(const void *)bytes, section->decoded_size / sizeof(weft_half), false);
-    return *fault ? WEFT_BAD_INPUT : load_planes(file, material, section, bytes, fault, error);
+    (void)material;
+    (void)level;
+    return weft_fault_of_halves(bytes, size, false);
 }
 
-static weft_code load_lights(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_lights(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    (void)section;
     (void)error;
-    *fault = weft_take_directions((const float *)(const void *)bytes, material->light_count, material->light);
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+    weft_take_directions(r->bytes, r->material->light_count, r->material->light);
+    return WEFT_OK;
 }
 
-static weft_code load_errors(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_errors(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
     (void)error;
-    double value[WEFT_FORMAT_ERRORS];
-    memcpy(value, bytes, sizeof value);
-    *fault = weft_take_errors(value, &material->level[section->level].error);
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+    r->material->level[r->section->level].error = weft_take_errors(r->bytes);
+    return WEFT_OK;
 }
 
 /* ---- Tables by components ---- */
@@ -281,18 +276,16 @@ static uint8_t code_of_basis(int32_t sum)
     return (uint8_t)(sum < 0 ? 0 : sum > 255 ? 255 : sum);
 }
 
-static weft_code load_basis(weft_material_file *file, weft_material *material, const weft_section *section,
-                            const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_basis(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    (void)fault;
     (void)error;
-    const weft_material_level *level = &material->level[section->level];
-    size_t directions = directions_of(material, section), texels = weft_texel_count(material, (int)section->level);
-    size_t count = components_of_basis(section->decoded_size, directions, texels);
-    const int16_t *mean = (const int16_t *)(const void *)bytes, *component = mean + directions;
+    const weft_material_level *level = &r->material->level[r->section->level];
+    size_t directions = directions_of(r->material, r->section),
+           texels = weft_texel_count(r->material, (int)r->section->level);
+    size_t count = components_of_basis(r->section->decoded_size, directions, texels);
+    const int16_t *mean = (const int16_t *)(const void *)r->bytes, *component = mean + directions;
     const int8_t *coefficient = (const int8_t *)(component + count * directions);
-    uint8_t *table = section->type[0] == 'T' ? level->table : level->light_table;
+    uint8_t *table = r->section->type[0] == 'T' ? level->table : level->light_table;
     memset(table, 255, 4 * directions * texels);
     for (size_t d = 0; d < directions; d++)
         for (size_t i = 0; i < 3 * texels; i++) {
@@ -328,42 +321,21 @@ static bool fit_coefficients(const weft_material_file *file, const weft_material
     return fit;
 }
 
-static weft_code load_shared(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_shared(weft_section_reading *r, weft_error *error)
 {
-    weft_value_coding coding = section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_VALUES_BY_DIFFERENCES
-                               : section->codec == WEFT_CODEC_WEIGHTED  ? WEFT_VALUES_BY_WEIGHTED_DIFFERENCES
-                                                                        : WEFT_VALUES_AS_HALVES;
+    weft_value_coding coding = r->section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_VALUES_BY_DIFFERENCES
+                               : r->section->codec == WEFT_CODEC_WEIGHTED  ? WEFT_VALUES_BY_WEIGHTED_DIFFERENCES
+                                                                           : WEFT_VALUES_AS_HALVES;
     uint32_t components = 0;
-    if (section->decoded_size >= 8)
-        memcpy(&components, bytes + 4, sizeof components);
-    if (!fit_coefficients(file, material, components)) {
-        *fault = "its components are not those of the coefficients";
+    if (r->section->decoded_size >= 8)
+        memcpy(&components, r->bytes + 4, sizeof components);
+    if (!fit_coefficients(r->file, r->material, components)) {
+        r->fault = "its components are not those of the coefficients";
         return WEFT_BAD_INPUT;
     }
-    return weft_components_section_read(bytes, section->decoded_size, coding, material->level[0].width,
-                                        material->level[0].height, material->level_count, &material->components, fault,
-                                        error);
-}
-
-static weft_code load_ceilings(weft_material_file *file, weft_material *material, const weft_section *section,
-                               const uint8_t *bytes, const char **fault, weft_error *error)
-{
-    (void)file;
-    (void)fault;
-    (void)error;
-    memcpy(material->components->level[section->level].ceiling, bytes, section->decoded_size);
-    return WEFT_OK;
-}
-
-static weft_code load_floors(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
-{
-    (void)file;
-    (void)fault;
-    (void)error;
-    memcpy(material->components->level[section->level].floor, bytes, section->decoded_size);
-    return WEFT_OK;
+    return weft_components_section_read(r->bytes, r->section->decoded_size, coding, r->material->level[0].width,
+                                        r->material->level[0].height, r->material->level_count,
+                                        &r->material->components, &r->fault, error);
 }
 
 /* ---- The list ---- */
@@ -377,11 +349,20 @@ static const weft_section_kind sections_of_version_1[] = {
      .size = size_of_models,
      .load = load_models},
     {.type = "META", .check = weft_check_metadata, .load = weft_load_metadata},
-    {.type = "VIEW", .needs = VIEWS, .size = weft_size_of_views, .load = weft_load_views},
-    {.type = "LITE", .needs = LIGHTS, .size = size_of_lights, .load = load_lights},
-    {.type = "FRAM", .of_levels = true, .size = weft_size_of_frames, .load = weft_load_frames},
-    {.type = "RHO ", .of_levels = true, .size = size_of_diffuse, .load = load_diffuse},
-    {.type = "LOBE", .of_levels = true, .needs = LOBES, .check = check_lobes, .load = load_lobes},
+    {.type = "VIEW",
+     .needs = VIEWS,
+     .size = weft_size_of_views,
+     .fault = weft_fault_of_directions,
+     .load = weft_load_views},
+    {.type = "LITE", .needs = LIGHTS, .size = size_of_lights, .fault = weft_fault_of_directions, .load = load_lights},
+    {.type = "FRAM", .of_levels = true, .array = weft_array_of_frames},
+    {.type = "RHO ", .of_levels = true, .size = size_of_diffuse, .fault = fault_of_diffuse, .load = load_diffuse},
+    {.type = "LOBE",
+     .of_levels = true,
+     .needs = LOBES,
+     .check = check_lobes,
+     .fault = fault_of_lobes,
+     .load = load_planes},
     {.type = "TABL", .of_levels = true, .needs = VIEWS, .bars = BASES, .check = check_table, .load = load_planes},
     {.type = "STAB",
      .of_levels = true,
@@ -401,26 +382,17 @@ static const weft_section_kind sections_of_version_1[] = {
      .reveals = BASES,
      .check = check_basis,
      .load = load_basis},
-    {.type = "ALPH",
-     .of_levels = true,
-     .needs = OPACITY | BASES,
-     .reveals = OPACITY,
-     .size = weft_size_of_opacity,
-     .load = weft_load_opacity},
-    {.type = "ERRO", .of_levels = true, .size = size_of_errors, .load = load_errors},
+    {.type = "ALPH", .of_levels = true, .needs = OPACITY | BASES, .reveals = OPACITY, .array = weft_array_of_opacity},
+    {.type = "ERRO", .of_levels = true, .size = size_of_errors, .fault = weft_fault_of_errors, .load = load_errors},
     {.type = "LAYR", .needs = COMPONENTS, .reveals = COMPONENTS, .is_free = true, .load = load_shared},
     {.type = "LCOE",
      .of_levels = true,
      .needs = COMPONENTS,
+     .array = weft_array_of_coefficients,
      .check = check_coefficients,
-     .load = weft_load_coefficients},
-    {.type = "CEIL", .of_levels = true, .needs = COMPONENTS, .size = size_of_ceilings, .load = load_ceilings},
-    {.type = "FLOR",
-     .of_levels = true,
-     .needs = COMPONENTS | FLOORS,
-     .reveals = FLOORS,
-     .size = size_of_floors,
-     .load = load_floors},
+     .fault = weft_fault_of_coefficients},
+    {.type = "CEIL", .of_levels = true, .needs = COMPONENTS, .array = array_of_ceilings},
+    {.type = "FLOR", .of_levels = true, .needs = COMPONENTS | FLOORS, .reveals = FLOORS, .array = array_of_floors},
     {.type = "HGHT", .needs = HEIGHTS, .reveals = HEIGHTS, .is_free = true, .load = weft_load_heights},
     {.type = "SEEN", .needs = VISIBILITY, .reveals = VISIBILITY, .is_free = true, .load = weft_load_visibility},
 };

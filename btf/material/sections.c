@@ -49,31 +49,29 @@ const char *weft_check_metadata(const weft_material_file *file, const weft_mater
     return section->decoded_size > WEFT_FORMAT_MAX_METADATA ? "its size does not fit the material" : NULL;
 }
 
-weft_code weft_load_metadata(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+weft_code weft_load_metadata(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    size_t size = section->decoded_size;
+    size_t size = r->section->decoded_size;
     char *text = malloc(size + 1);
     if (!text)
         return weft_fail_memory(error, "metadata", size);
-    memcpy(text, bytes, size);
+    memcpy(text, r->bytes, size);
     text[size] = 0;
-    free(material->metadata);
-    material->metadata = text;
+    free(r->material->metadata);
+    r->material->metadata = text;
     json_error_t where;
     errno = 0;
     json_t *object = json_loadb(text, size, 0, &where);
     bool valid = json_is_object(object) && strlen(text) == size;
     const json_t *certified = json_object_get(object, "certificate");
     weft_certificate certificate;
-    *fault = !valid ? "no JSON object" : certified ? weft_certificate_unpack(certified, &certificate) : NULL;
+    r->fault = !valid ? "no JSON object" : certified ? weft_certificate_unpack(certified, &certificate) : NULL;
     json_decref(object);
     if (!valid && errno == ENOMEM) {
-        *fault = NULL;
+        r->fault = NULL;
         return weft_fail_memory(error, "metadata", size);
     }
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+    return r->fault ? WEFT_BAD_INPUT : WEFT_OK;
 }
 
 static void store_metadata(const weft_material *material, int level, uint8_t *bytes)
@@ -84,20 +82,30 @@ static void store_metadata(const weft_material *material, int level, uint8_t *by
 /* ---- Errors ---- */
 
 /* The last is the PSNR: negative where the fit is poor, infinite where it is perfect. */
-const char *weft_take_errors(const double *value, weft_error_summary *error)
+const char *weft_fault_of_errors(const weft_material *material, int level, const uint8_t *bytes, size_t size)
 {
-    for (int i = 0; i < WEFT_FORMAT_ERRORS; i++) {
-        bool is_psnr = i + 1 == WEFT_FORMAT_ERRORS;
-        if (!(is_psnr ? value[i] > -INFINITY : value[i] >= 0 && value[i] < INFINITY))
+    (void)material;
+    (void)level;
+    for (size_t i = 0; i < size / sizeof(double); i++) {
+        double value;
+        memcpy(&value, bytes + i * sizeof value, sizeof value);
+        bool is_psnr = i % WEFT_FORMAT_ERRORS == WEFT_FORMAT_ERRORS - 1;
+        if (!(is_psnr ? value > -INFINITY : value >= 0 && value < INFINITY))
             return is_psnr ? "holds a PSNR that is NaN or minus infinity"
                            : "holds an error that is NaN, negative or infinite";
     }
-    *error = (weft_error_summary){.median_relative = value[0],
-                                  .percentile80_relative = value[1],
-                                  .rmse = value[2],
-                                  .relative_rmse = value[3],
-                                  .psnr_db = value[4]};
     return NULL;
+}
+
+weft_error_summary weft_take_errors(const uint8_t *bytes)
+{
+    double value[WEFT_FORMAT_ERRORS];
+    memcpy(value, bytes, sizeof value);
+    return (weft_error_summary){.median_relative = value[0],
+                                .percentile80_relative = value[1],
+                                .rmse = value[2],
+                                .relative_rmse = value[3],
+                                .psnr_db = value[4]};
 }
 
 static uint64_t size_of_errors(const weft_material *material, int level)
@@ -106,18 +114,12 @@ static uint64_t size_of_errors(const weft_material *material, int level)
     return (uint64_t)material->level_count * WEFT_FORMAT_ERRORS * sizeof(double);
 }
 
-static weft_code load_errors(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_errors(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    (void)section;
     (void)error;
-    double value[WEFT_FORMAT_ERRORS];
-    for (int k = 0; k < material->level_count && !*fault; k++) {
-        memcpy(value, bytes + (size_t)k * sizeof value, sizeof value);
-        *fault = weft_take_errors(value, &material->level[k].error);
-    }
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+    for (int k = 0; k < r->material->level_count; k++)
+        r->material->level[k].error = weft_take_errors(r->bytes + (size_t)k * WEFT_FORMAT_ERRORS * sizeof(double));
+    return WEFT_OK;
 }
 
 static void store_errors(const weft_material *material, int level, uint8_t *bytes)
@@ -133,15 +135,25 @@ static void store_errors(const weft_material *material, int level, uint8_t *byte
 
 /* ---- Views ---- */
 
-const char *weft_take_directions(const float *xyz, int count, weft_vec3 *direction)
+const char *weft_fault_of_directions(const weft_material *material, int level, const uint8_t *bytes, size_t size)
 {
-    for (int i = 0; i < count; i++) {
-        direction[i] = weft_vec3_of((weft_real)xyz[3 * i], (weft_real)xyz[3 * i + 1], (weft_real)xyz[3 * i + 2]);
-        if (!(fabs(weft_length(direction[i]) - 1) < 1e-3) || direction[i].z < -1e-6)
+    (void)material;
+    (void)level;
+    const float *xyz = (const float *)(const void *)bytes;
+    for (size_t i = 0; i < size / sizeof *xyz; i += 3) {
+        weft_vec3 direction = weft_vec3_of((weft_real)xyz[i], (weft_real)xyz[i + 1], (weft_real)xyz[i + 2]);
+        if (!(fabs(weft_length(direction) - 1) < 1e-3) || direction.z < -1e-6)
             return "holds a direction that is no unit vector of the upper hemisphere";
-        direction[i] = weft_unit(direction[i]);
     }
     return NULL;
+}
+
+void weft_take_directions(const uint8_t *bytes, int count, weft_vec3 *direction)
+{
+    const float *xyz = (const float *)(const void *)bytes;
+    for (int i = 0; i < count; i++)
+        direction[i] =
+            weft_unit(weft_vec3_of((weft_real)xyz[3 * i], (weft_real)xyz[3 * i + 1], (weft_real)xyz[3 * i + 2]));
 }
 
 uint64_t weft_size_of_views(const weft_material *material, int level)
@@ -150,14 +162,11 @@ uint64_t weft_size_of_views(const weft_material *material, int level)
     return (uint64_t)material->view_count * 3 * sizeof(float);
 }
 
-weft_code weft_load_views(weft_material_file *file, weft_material *material, const weft_section *section,
-                          const uint8_t *bytes, const char **fault, weft_error *error)
+weft_code weft_load_views(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    (void)section;
     (void)error;
-    *fault = weft_take_directions((const float *)(const void *)bytes, material->view_count, material->view);
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+    weft_take_directions(r->bytes, r->material->view_count, r->material->view);
+    return WEFT_OK;
 }
 
 static void store_views(const weft_material *material, int level, uint8_t *bytes)
@@ -173,30 +182,16 @@ static void store_views(const weft_material *material, int level, uint8_t *bytes
 
 /* ---- Frames and lobes ---- */
 
-uint64_t weft_size_of_frames(const weft_material *material, int level)
+weft_section_array weft_array_of_frames(const weft_material *material, int level)
 {
-    return weft_texel_count(material, level) * 3 * sizeof(int16_t);
+    const size_t bytes = 3 * sizeof(int16_t);
+    return (weft_section_array){material->level[level].frame, 0, weft_texel_count(material, level), bytes, bytes};
 }
 
-weft_code weft_load_frames(weft_material_file *file, weft_material *material, const weft_section *section,
-                           const uint8_t *bytes, const char **fault, weft_error *error)
+const char *weft_fault_of_halves(const uint8_t *bytes, size_t size, bool all_positive)
 {
-    (void)file;
-    (void)fault;
-    (void)error;
-    memcpy(material->level[section->level].frame, bytes, section->decoded_size);
-    return WEFT_OK;
-}
-
-static void store_frames(const weft_material *material, int level, uint8_t *bytes)
-{
-    memcpy(bytes, material->level[level].frame, weft_size_of_frames(material, level));
-}
-
-const char *weft_fault_of_halves(const weft_half *half, size_t count, bool all_positive)
-{
-    const weft_half infinite = 0x7c00, minus_zero = 0x8000;
-    for (size_t i = 0; i < count; i++) {
+    const weft_half *half = (const weft_half *)(const void *)bytes, infinite = 0x7c00, minus_zero = 0x8000;
+    for (size_t i = 0; i < size / sizeof *half; i++) {
         if ((half[i] & infinite) == infinite)
             return "holds a number that is not finite";
         if (half[i] > minus_zero && (all_positive || i % 4 == 3))
@@ -206,80 +201,34 @@ const char *weft_fault_of_halves(const weft_half *half, size_t count, bool all_p
 }
 
 /* The diffuse term with its ceiling, and behind it the lobes. */
-static uint64_t size_of_lobes(const weft_material *material, int level)
+static weft_section_array array_of_lobes(const weft_material *material, int level)
 {
-    return (1 + 3 * (uint64_t)material->lobe_count) * weft_texel_count(material, level) * 4 * sizeof(weft_half);
+    const size_t bytes = 4 * sizeof(weft_half);
+    size_t count = (1 + 3 * (size_t)material->lobe_count) * weft_texel_count(material, level);
+    return (weft_section_array){material->level[level].diffuse, 0, count, bytes, bytes};
 }
 
-static weft_code load_lobes(weft_material_file *file, weft_material *material, const weft_section *section,
-                            const uint8_t *bytes, const char **fault, weft_error *error)
+static const char *fault_of_lobes(const weft_material *material, int level, const uint8_t *bytes, size_t size)
 {
-    (void)file;
-    (void)error;
-    const weft_half *half = (const weft_half *)(const void *)bytes;
-    size_t diffuse = 4 * weft_texel_count(material, (int)section->level),
-           all = section->decoded_size / sizeof(weft_half);
-    *fault = weft_fault_of_halves(half, diffuse, true);
-    if (!*fault)
-        *fault = weft_fault_of_halves(half + diffuse, all - diffuse, false);
-    if (!*fault)
-        memcpy(material->level[section->level].diffuse, bytes, section->decoded_size);
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
+    size_t diffuse = 4 * sizeof(weft_half) * weft_texel_count(material, level);
+    const char *fault = weft_fault_of_halves(bytes, diffuse, true);
+    return fault ? fault : weft_fault_of_halves(bytes + diffuse, size - diffuse, false);
 }
 
-static void store_lobes(const weft_material *material, int level, uint8_t *bytes)
+/* ---- View table and opacity: in memory red, green, blue and opacity lie side by side ---- */
+
+static weft_section_array array_of_table(const weft_material *material, int level)
 {
-    memcpy(bytes, material->level[level].diffuse, size_of_lobes(material, level));
+    size_t count = (size_t)material->view_count * weft_texel_count(material, level);
+    return (weft_section_array){material->level[level].table, 0, count, 3, 4};
 }
 
-/* ---- View table and opacity ---- */
-
-static uint64_t size_of_table(const weft_material *material, int level)
+weft_section_array weft_array_of_opacity(const weft_material *material, int level)
 {
-    return 3 * weft_size_of_opacity(material, level);
-}
-
-static weft_code load_table(weft_material_file *file, weft_material *material, const weft_section *section,
-                            const uint8_t *bytes, const char **fault, weft_error *error)
-{
-    (void)file;
-    (void)fault;
-    (void)error;
-    uint8_t *table = material->level[section->level].table;
-    for (size_t i = 0; i < section->decoded_size / 3; i++)
-        memcpy(table + 4 * i, bytes + 3 * i, 3);
-    return WEFT_OK;
-}
-
-static void store_table(const weft_material *material, int level, uint8_t *bytes)
-{
-    const uint8_t *table = material->level[level].table;
-    for (size_t i = 0; i < weft_size_of_opacity(material, level); i++)
-        memcpy(bytes + 3 * i, table + 4 * i, 3);
-}
-
-uint64_t weft_size_of_opacity(const weft_material *material, int level)
-{
-    return (uint64_t)material->view_count * weft_texel_count(material, level);
-}
-
-weft_code weft_load_opacity(weft_material_file *file, weft_material *material, const weft_section *section,
-                            const uint8_t *bytes, const char **fault, weft_error *error)
-{
-    (void)file;
-    (void)fault;
-    (void)error;
-    uint8_t *table = material->level[section->level].table;
-    for (size_t i = 0; i < section->decoded_size; i++)
-        table[4 * i + 3] = bytes[i];
-    return WEFT_OK;
-}
-
-static void store_opacity(const weft_material *material, int level, uint8_t *bytes)
-{
-    const uint8_t *table = material->level[level].table;
-    for (size_t i = 0; i < weft_size_of_opacity(material, level); i++)
-        bytes[i] = table[4 * i + 3];
+    weft_section_array array = array_of_table(material, level);
+    array.offset = 3;
+    array.bytes = 1;
+    return array;
 }
 
 /* ---- Components ---- */
@@ -290,15 +239,14 @@ static uint64_t size_of_shared(const weft_material *material, int level)
     return weft_components_section_size(material->components, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES);
 }
 
-static weft_code load_shared(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_shared(weft_section_reading *r, weft_error *error)
 {
-    WEFT_TRY(weft_components_section_read(bytes, section->decoded_size, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES,
-                                          material->level[0].width, material->level[0].height, material->level_count,
-                                          &material->components, fault, error));
-    if (material->components->component_count == file->component_count)
+    WEFT_TRY(weft_components_section_read(r->bytes, r->section->decoded_size, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES,
+                                          r->material->level[0].width, r->material->level[0].height,
+                                          r->material->level_count, &r->material->components, &r->fault, error));
+    if (r->material->components->component_count == r->file->component_count)
         return WEFT_OK;
-    *fault = "its components are not as many as the header says";
+    r->fault = "its components are not as many as the header says";
     return WEFT_BAD_INPUT;
 }
 
@@ -317,28 +265,18 @@ static const char *check_coefficients(const weft_material_file *file, const weft
                                                                              : "its size does not fit the material";
 }
 
-static uint64_t size_of_coefficients(const weft_material *material, int level)
+weft_section_array weft_array_of_coefficients(const weft_material *material, int level)
 {
-    return weft_texel_count(material, level) * (uint64_t)material->components->component_count;
+    const weft_components *components = material->components;
+    size_t count = weft_texel_count(material, level) * (size_t)components->component_count;
+    return (weft_section_array){components->level[level].coefficient, 0, count, 1, 1};
 }
 
-weft_code weft_load_coefficients(weft_material_file *file, weft_material *material, const weft_section *section,
-                                 const uint8_t *bytes, const char **fault, weft_error *error)
+const char *weft_fault_of_coefficients(const weft_material *material, int level, const uint8_t *bytes, size_t size)
 {
-    (void)file;
-    (void)error;
-    for (size_t i = 0; i < section->decoded_size; i++) {
-        if (bytes[i] == 128)
-            *fault = "holds a coefficient of -128";
-    }
-    if (!*fault)
-        memcpy(material->components->level[section->level].coefficient, bytes, section->decoded_size);
-    return *fault ? WEFT_BAD_INPUT : WEFT_OK;
-}
-
-static void store_coefficients(const weft_material *material, int level, uint8_t *bytes)
-{
-    memcpy(bytes, material->components->level[level].coefficient, size_of_coefficients(material, level));
+    (void)material;
+    (void)level;
+    return memchr(bytes, 128, size) ? "holds a coefficient of -128" : NULL;
 }
 
 /* Floors of red, green and blue, and the ceiling. */
@@ -347,16 +285,13 @@ static uint64_t size_of_bounds(const weft_material *material, int level)
     return 4 * weft_ceiling_count(material->level[level].width, material->level[level].height);
 }
 
-static weft_code load_bounds(weft_material_file *file, weft_material *material, const weft_section *section,
-                             const uint8_t *bytes, const char **fault, weft_error *error)
+static weft_code load_bounds(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    (void)fault;
     (void)error;
-    weft_components_level *level = &material->components->level[section->level];
-    for (size_t i = 0; i < section->decoded_size / 4; i++) {
-        memcpy(level->floor + 3 * i, bytes + 4 * i, 3);
-        level->ceiling[i] = bytes[4 * i + 3];
+    weft_components_level *level = &r->material->components->level[r->section->level];
+    for (size_t i = 0; i < r->section->decoded_size / 4; i++) {
+        memcpy(level->floor + 3 * i, r->bytes + 4 * i, 3);
+        level->ceiling[i] = r->bytes[4 * i + 3];
     }
     return WEFT_OK;
 }
@@ -378,11 +313,9 @@ static uint64_t size_of_heights(const weft_material *material, int level)
     return weft_material_heights_size(material->heights);
 }
 
-weft_code weft_load_heights(weft_material_file *file, weft_material *material, const weft_section *section,
-                            const uint8_t *bytes, const char **fault, weft_error *error)
+weft_code weft_load_heights(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    return weft_material_heights_read(bytes, section->decoded_size, &material->heights, fault, error);
+    return weft_material_heights_read(r->bytes, r->section->decoded_size, &r->material->heights, &r->fault, error);
 }
 
 static void store_heights(const weft_material *material, int level, uint8_t *bytes)
@@ -397,12 +330,10 @@ static uint64_t size_of_visibility(const weft_material *material, int level)
     return weft_material_visibility_size(material->visibility);
 }
 
-weft_code weft_load_visibility(weft_material_file *file, weft_material *material, const weft_section *section,
-                               const uint8_t *bytes, const char **fault, weft_error *error)
+weft_code weft_load_visibility(weft_section_reading *r, weft_error *error)
 {
-    (void)file;
-    return weft_material_visibility_read(bytes, section->decoded_size, material->level_count, &material->visibility,
-                                         fault, error);
+    return weft_material_visibility_read(r->bytes, r->section->decoded_size, r->material->level_count,
+                                         &r->material->visibility, &r->fault, error);
 }
 
 static void store_visibility(const weft_material *material, int level, uint8_t *bytes)
@@ -420,36 +351,20 @@ const weft_section_kind weft_sections_of_version_2[WEFT_FORMAT_KINDS] = {
      .check = weft_check_metadata,
      .load = weft_load_metadata,
      .store = store_metadata},
-    {.type = "ERRO", .size = size_of_errors, .load = load_errors, .store = store_errors},
+    {.type = "ERRO", .size = size_of_errors, .fault = weft_fault_of_errors, .load = load_errors, .store = store_errors},
     {.type = "VIEW",
      .needs = WEFT_FEATURE_VIEWS,
      .size = weft_size_of_views,
+     .fault = weft_fault_of_directions,
      .load = weft_load_views,
      .store = store_views},
-    {.type = "FRAM",
-     .of_levels = true,
-     .needs = WEFT_FEATURE_LOBES,
-     .size = weft_size_of_frames,
-     .load = weft_load_frames,
-     .store = store_frames},
-    {.type = "LOBE",
-     .of_levels = true,
-     .needs = WEFT_FEATURE_LOBES,
-     .size = size_of_lobes,
-     .load = load_lobes,
-     .store = store_lobes},
-    {.type = "TABL",
-     .of_levels = true,
-     .needs = WEFT_FEATURE_LOBES | WEFT_FEATURE_VIEWS,
-     .size = size_of_table,
-     .load = load_table,
-     .store = store_table},
+    {.type = "FRAM", .of_levels = true, .needs = WEFT_FEATURE_LOBES, .array = weft_array_of_frames},
+    {.type = "LOBE", .of_levels = true, .needs = WEFT_FEATURE_LOBES, .array = array_of_lobes, .fault = fault_of_lobes},
+    {.type = "TABL", .of_levels = true, .needs = WEFT_FEATURE_LOBES | WEFT_FEATURE_VIEWS, .array = array_of_table},
     {.type = "ALPH",
      .of_levels = true,
      .needs = WEFT_FEATURE_VIEWS | WEFT_FEATURE_OPACITY,
-     .size = weft_size_of_opacity,
-     .load = weft_load_opacity,
-     .store = store_opacity},
+     .array = weft_array_of_opacity},
     {.type = "COMP",
      .needs = WEFT_FEATURE_COMPONENTS,
      .is_free = true,
@@ -459,10 +374,9 @@ const weft_section_kind weft_sections_of_version_2[WEFT_FORMAT_KINDS] = {
     {.type = "COEF",
      .of_levels = true,
      .needs = WEFT_FEATURE_COMPONENTS,
-     .size = size_of_coefficients,
+     .array = weft_array_of_coefficients,
      .check = check_coefficients,
-     .load = weft_load_coefficients,
-     .store = store_coefficients},
+     .fault = weft_fault_of_coefficients},
     {.type = "BNDS",
      .of_levels = true,
      .needs = WEFT_FEATURE_COMPONENTS,

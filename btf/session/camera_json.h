@@ -1,8 +1,8 @@
-/* A camera as a JSON object, in session.json and in the file of a lens. */
+/* A camera, and how it was calibrated, as JSON: in session.json and in the files of lenses and rigs. */
 #ifndef WEFT_BTF_SESSION_CAMERA_JSON_H
 #define WEFT_BTF_SESSION_CAMERA_JSON_H
 
-#include "btf/session/camera.h"
+#include "btf/session/lens.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -13,6 +13,13 @@ json_t *weft_camera_pack(const weft_camera *camera);
 /* False where a field is missing or of the wrong type: `cause` tells which. p1, p2 and k3 may be missing: 0. Values are
  * not checked. */
 bool weft_camera_unpack(json_t *json, weft_camera *camera, json_error_t *cause);
+
+/* The standard errors of a lens by the names of its parameters. The caller owns the reference; NULL where memory is
+ * short. */
+json_t *weft_lens_pack_errors(const double error[WEFT_LENS_PARAMETERS]);
+
+/* Puts the lists "used" and "left_out" of photographs, as weft_json_put does. */
+void weft_lens_put_photographs(json_t **root, const weft_lens_photograph *photograph, int count);
 
 /* The nearest int: a value beyond is out of every range, too. */
 int weft_limited_int(json_int_t value);

@@ -76,13 +76,7 @@ weft_code weft_camera_list_write(const char *folder, const weft_camera_list *lis
     for (int i = 0; i < list->count; i++)
         weft_json_append(&names, json_string(list->name[i]));
     json_t *root = json_pack("{si so}", "weft_cameras", LIST_VERSION, "cameras", names);
-    char *text = root ? json_dumps(root, JSON_INDENT(1)) : NULL;
-    json_decref(root);
-    if (!text)
-        return weft_fail_memory(error, weft_camera_list_file, 0);
-    weft_code code = weft_write_file(path, text, strlen(text), error);
-    free(text);
-    return code;
+    return weft_json_write(path, root, JSON_INDENT(1), error);
 }
 
 weft_code weft_camera_file(const char *path, const char *camera, char *file, size_t size, weft_error *error)

@@ -11,6 +11,8 @@ enum { COLOUR_VERSION = 1, MAX_COLOUR_BYTES = 1 << 20 };
 
 static const double largest_coefficient = 1000, white_tolerance = 1e-6, least_determinant = 1e-6;
 
+static const weft_json_kind kind = {"weft_colour", COLOUR_VERSION, "is no colour file", "is a colour file"};
+
 static const char *const model_name[] = {"linear", "root"};
 
 void weft_colour_terms(int terms, const double rgb[3], double term[WEFT_COLOUR_ROOT_TERMS])
@@ -81,13 +83,7 @@ weft_code weft_colour_write(const char *path, const weft_colour *colour, json_t 
         root = NULL;
     }
     json_decref(packed);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(12)) : NULL;
-    json_decref(root);
-    if (!text)
-        return weft_fail_memory(error, path, 0);
-    weft_code code = weft_write_file(path, text, strlen(text), error);
-    free(text);
-    return code;
+    return weft_json_write(path, root, JSON_INDENT(1) | JSON_REAL_PRECISION(12), error);
 }
 
 /* ---- Reading ---- */
@@ -164,24 +160,12 @@ weft_code weft_colour_unpack(json_t *json, const char *path, weft_colour *colour
     return unpack_matrix(matrix, path, colour, error);
 }
 
-static weft_code unpack_file(json_t *root, const char *path, weft_colour *colour, weft_error *error)
-{
-    json_int_t version = 0;
-    errno = 0;
-    if (json_unpack(root, "{sI}", "weft_colour", &version) != 0)
-        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' is no colour file", path);
-    if (version != COLOUR_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a colour file of version %lld, this program reads version %d",
-                         path, (long long)version, COLOUR_VERSION);
-    return weft_colour_unpack(root, path, colour, error);
-}
-
 weft_code weft_colour_read(const char *path, weft_colour *colour, weft_error *error)
 {
     json_t *root = NULL;
     *colour = (weft_colour){0};
-    WEFT_TRY(weft_json_read(path, MAX_COLOUR_BYTES, &root, error));
-    weft_code code = unpack_file(root, path, colour, error);
+    WEFT_TRY(weft_json_read_kind(path, MAX_COLOUR_BYTES, &kind, &root, error));
+    weft_code code = weft_colour_unpack(root, path, colour, error);
     json_decref(root);
     return code;
 }

@@ -10,6 +10,7 @@
 enum { LENS_VERSION = 1, MAX_LENS_BYTES = 1 << 24, MAX_SIDE = 32768 };
 
 static const double largest_coefficient = 1e6;
+static const weft_json_kind kind = {"weft_lens", LENS_VERSION, "is no lens", "is a lens"};
 
 const char *const weft_lens_parameter_name[WEFT_LENS_PARAMETERS] = {"fx", "fy", "cx", "cy", "k1",
                                                                     "k2", "p1", "p2", "k3"};
@@ -22,59 +23,47 @@ double weft_lens_parameter(const weft_camera *c, int parameter)
 
 /* ---- Writing ---- */
 
-static json_t *pack_errors(const weft_lens *lens)
+json_t *weft_lens_pack_errors(const double error[WEFT_LENS_PARAMETERS])
 {
     json_t *errors = json_object();
     for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
-        weft_json_put(&errors, weft_lens_parameter_name[i], json_real(lens->standard_error[i]));
+        weft_json_put(&errors, weft_lens_parameter_name[i], json_real(error[i]));
     return errors;
 }
 
-static json_t *pack_name(const char *name)
+static json_t *pack_text(const char *text)
 {
-    return weft_json_text(name, strlen(name));
+    return weft_json_text(text, strlen(text));
 }
 
-static json_t *pack_used(const weft_lens_photograph *photograph, int count)
+void weft_lens_put_photographs(json_t **root, const weft_lens_photograph *photograph, int count)
 {
-    json_t *used = json_array();
-    for (int i = 0; i < count; i++)
+    json_t *used = json_array(), *left_out = json_array();
+    for (int i = 0; i < count; i++) {
         if (!photograph[i].left_out)
-            weft_json_append(&used, pack_name(photograph[i].name));
-    return used;
-}
-
-static json_t *pack_left_out(const weft_lens_photograph *photograph, int count)
-{
-    json_t *left_out = json_array();
-    for (int i = 0; i < count; i++)
-        if (photograph[i].left_out)
-            weft_json_append(&left_out, json_pack("{so so}", "photograph", pack_name(photograph[i].name), "reason",
-                                                  pack_name(photograph[i].left_out)));
-    return left_out;
+            weft_json_append(&used, pack_text(photograph[i].name));
+        else
+            weft_json_append(&left_out, json_pack("{so so}", "photograph", pack_text(photograph[i].name), "reason",
+                                                  pack_text(photograph[i].left_out)));
+    }
+    weft_json_put(root, "used", used);
+    weft_json_put(root, "left_out", left_out);
 }
 
 weft_code weft_lens_write(const char *path, const weft_lens *lens, const char *board,
                           const weft_lens_photograph *photograph, int count, weft_error *error)
 {
-    json_t *root = json_pack("{si so}", "weft_lens", LENS_VERSION, "board", pack_name(board));
+    json_t *root = json_pack("{si so}", "weft_lens", LENS_VERSION, "board", pack_text(board));
     json_t *camera = weft_camera_pack(&lens->camera);
     if (!root || json_object_update(root, camera) != 0) {
         json_decref(root);
         root = NULL;
     }
     json_decref(camera);
-    weft_json_put(&root, "standard_error", pack_errors(lens));
+    weft_json_put(&root, "standard_error", weft_lens_pack_errors(lens->standard_error));
     weft_json_put(&root, "rms_px", json_real(lens->rms_px));
-    weft_json_put(&root, "used", pack_used(photograph, count));
-    weft_json_put(&root, "left_out", pack_left_out(photograph, count));
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(12)) : NULL;
-    json_decref(root);
-    if (!text)
-        return weft_fail_memory(error, path, 0);
-    weft_code code = weft_write_file(path, text, strlen(text), error);
-    free(text);
-    return code;
+    weft_lens_put_photographs(&root, photograph, count);
+    return weft_json_write(path, root, JSON_INDENT(1) | JSON_REAL_PRECISION(12), error);
 }
 
 /* ---- Reading ---- */
@@ -105,15 +94,9 @@ static bool unpack_errors(json_t *errors, weft_lens *lens, json_error_t *cause)
 
 static weft_code unpack_lens(json_t *root, const char *path, weft_lens *lens, weft_error *error)
 {
-    json_int_t version = 0;
     json_error_t cause;
     json_t *errors = NULL;
     errno = 0;
-    if (json_unpack(root, "{sI}", "weft_lens", &version) != 0)
-        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' is no lens", path);
-    if (version != LENS_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a lens of version %lld, this program reads version %d", path,
-                         (long long)version, LENS_VERSION);
     if (!weft_camera_unpack(root, &lens->camera, &cause) ||
         json_unpack_ex(root, &cause, 0, "{s?F s?o}", "rms_px", &lens->rms_px, "standard_error", &errors) != 0 ||
         !unpack_errors(errors, lens, &cause))
@@ -126,7 +109,7 @@ weft_code weft_lens_read(const char *path, weft_lens *lens, weft_error *error)
 {
     json_t *root = NULL;
     *lens = (weft_lens){0};
-    WEFT_TRY(weft_json_read(path, MAX_LENS_BYTES, &root, error));
+    WEFT_TRY(weft_json_read_kind(path, MAX_LENS_BYTES, &kind, &root, error));
     weft_code code = unpack_lens(root, path, lens, error);
     json_decref(root);
     return code;

@@ -16,7 +16,7 @@ typedef struct weft_lens {
     double rms_px;                               /* of the corners about where the lens puts them */
 } weft_lens;
 
-/* A photograph of the calibration. */
+/* A photograph of the calibration of a lens or a rig. */
 typedef struct weft_lens_photograph {
     const char *name;
     const char *left_out; /* why; NULL: it was used */

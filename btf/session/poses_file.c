@@ -13,6 +13,8 @@ enum { POSES_VERSION = 1, MAX_POSES_BYTES = 1 << 24, MAX_SIDE = 32768 };
 /* No rig is larger, and no bearing worse. */
 static const double largest_mm = 1e6, largest_bearing = 1, largest_coefficient = 1e6;
 
+static const weft_json_kind kind = {"weft_poses", POSES_VERSION, "holds no poses of a rig", "holds poses"};
+
 /* ---- Writing ---- */
 
 static json_t *pack_list(const double *value, int count, double unit)
@@ -57,37 +59,11 @@ static json_t *pack_home(const weft_poses_file *file)
                      pack_list(home.translation, 3, 1), "standard_error", errors);
 }
 
-static json_t *pack_lens_errors(const weft_poses_file *file)
-{
-    json_t *errors = json_object();
-    for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
-        weft_json_put(&errors, weft_lens_parameter_name[i], json_real(file->lens_error[i]));
-    return errors;
-}
-
-static json_t *pack_text(const char *text)
-{
-    return weft_json_text(text, strlen(text));
-}
-
-static json_t *pack_shots(const weft_poses_shot *shot, int count, bool left_out)
-{
-    json_t *list = json_array();
-    for (int i = 0; i < count; i++) {
-        if (!left_out && !shot[i].left_out)
-            weft_json_append(&list, pack_text(shot[i].name));
-        if (left_out && shot[i].left_out)
-            weft_json_append(&list, json_pack("{so so}", "photograph", pack_text(shot[i].name), "reason",
-                                              pack_text(shot[i].left_out)));
-    }
-    return list;
-}
-
 static json_t *pack_texts(const char *const *text, int count)
 {
     json_t *list = json_array();
     for (int i = 0; i < count; i++)
-        weft_json_append(&list, pack_text(text[i]));
+        weft_json_append(&list, weft_json_text(text[i], strlen(text[i])));
     return list;
 }
 
@@ -140,25 +116,20 @@ static weft_code check_numbers(const char *path, const weft_poses_file *file, we
     return WEFT_OK;
 }
 
-weft_code weft_poses_write(const char *path, const weft_poses_file *file, const weft_poses_shot *shot, int shot_count,
-                           const char *const *undetermined, int undetermined_count, weft_error *error)
+weft_code weft_poses_write(const char *path, const weft_poses_file *file, const weft_lens_photograph *shot,
+                           int shot_count, const char *const *undetermined, int undetermined_count, weft_error *error)
 {
     WEFT_TRY(check_numbers(path, file, error));
     json_t *scatter =
         json_pack("{sf sf}", "rotation_deg", weft_deg_of_rad(file->scatter_rad), "translation_mm", file->scatter_mm);
-    json_t *root = json_pack("{si so so so so so sf sf sf so so so}", "weft_poses", POSES_VERSION, "camera",
-                             weft_camera_pack(&file->poses.camera), "camera_standard_error", pack_lens_errors(file),
-                             "home", pack_home(file), "joints", pack_joints(file), "scatter", scatter, "point_px",
-                             file->point_px, "rms_px", file->rms_px, "held_out_rms_px", file->held_out_rms_px, "used",
-                             pack_shots(shot, shot_count, false), "left_out", pack_shots(shot, shot_count, true),
-                             "not_told", pack_texts(undetermined, undetermined_count));
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(15)) : NULL;
-    json_decref(root);
-    if (!text)
-        return weft_fail_memory(error, path, 0);
-    weft_code code = weft_write_file(path, text, strlen(text), error);
-    free(text);
-    return code;
+    json_t *root = json_pack("{si so so so so so sf sf sf}", "weft_poses", POSES_VERSION, "camera",
+                             weft_camera_pack(&file->poses.camera), "camera_standard_error",
+                             weft_lens_pack_errors(file->lens_error), "home", pack_home(file), "joints",
+                             pack_joints(file), "scatter", scatter, "point_px", file->point_px, "rms_px", file->rms_px,
+                             "held_out_rms_px", file->held_out_rms_px);
+    weft_lens_put_photographs(&root, shot, shot_count);
+    weft_json_put(&root, "not_told", pack_texts(undetermined, undetermined_count));
+    return weft_json_write(path, root, JSON_INDENT(1) | JSON_REAL_PRECISION(15), error);
 }
 
 /* ---- Reading ---- */
@@ -272,13 +243,7 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_poses_file *
 
 static weft_code unpack_poses(json_t *root, const char *path, weft_poses_file *file, weft_error *error)
 {
-    json_int_t version = 0;
     errno = 0;
-    if (json_unpack(root, "{sI}", "weft_poses", &version) != 0)
-        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' holds no poses of a rig", path);
-    if (version != POSES_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds poses of version %lld, this program reads version %d", path,
-                         (long long)version, POSES_VERSION);
     WEFT_TRY(unpack_fields(root, path, file, error));
     return unpack_joints(json_object_get(root, "joints"), path, file, error);
 }
@@ -287,7 +252,7 @@ weft_code weft_poses_read(const char *path, weft_poses_file *file, weft_error *e
 {
     json_t *root = NULL;
     *file = (weft_poses_file){0};
-    WEFT_TRY(weft_json_read(path, MAX_POSES_BYTES, &root, error));
+    WEFT_TRY(weft_json_read_kind(path, MAX_POSES_BYTES, &kind, &root, error));
     weft_code code = unpack_poses(root, path, file, error);
     json_decref(root);
     return code;

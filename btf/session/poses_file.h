@@ -23,16 +23,10 @@ typedef struct weft_poses_file {
     double rms_px, held_out_rms_px; /* distances of points from where the poses put them, in shots fitted and not */
 } weft_poses_file;
 
-/* A shot of the calibration. */
-typedef struct weft_poses_shot {
-    const char *name;
-    const char *left_out; /* why; NULL: it was used */
-} weft_poses_shot;
-
 /* Writes atomically. `undetermined` are sentences on what the shots do not tell. Errors: WEFT_BAD_INPUT
  * naming a number that is not finite; WEFT_SYSTEM; WEFT_BAD_USAGE where the path names no file. */
-weft_code weft_poses_write(const char *path, const weft_poses_file *file, const weft_poses_shot *shot, int shot_count,
-                           const char *const *undetermined, int undetermined_count, weft_error *error);
+weft_code weft_poses_write(const char *path, const weft_poses_file *file, const weft_lens_photograph *shot,
+                           int shot_count, const char *const *undetermined, int undetermined_count, weft_error *error);
 
 /* Reads what can be computed with. Errors: WEFT_BAD_INPUT naming the file and the field or value that cannot be;
  * WEFT_SYSTEM. Thread-safe. */

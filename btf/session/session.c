@@ -12,6 +12,7 @@
 enum { SESSION_VERSION = 1, MAX_SESSION_BYTES = 1 << 28 };
 
 static const char session_name[] = "session.json";
+static const weft_json_kind kind = {"weft_session", SESSION_VERSION, "is no session", "is a session"};
 
 static void session_path(const weft_session *session, char path[PATH_MAX])
 {
@@ -88,14 +89,7 @@ weft_code weft_session_create(const weft_session *session, weft_error *error)
 {
     char path[PATH_MAX];
     session_path(session, path);
-    json_t *root = pack_session(session);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
-    json_decref(root);
-    if (!text)
-        return weft_fail_memory(error, session_name, 0);
-    weft_code code = weft_write_file(path, text, strlen(text), error);
-    free(text);
-    return code;
+    return weft_json_write(path, pack_session(session), JSON_INDENT(1) | JSON_REAL_PRECISION(17), error);
 }
 
 /* ---- Reading ---- */
@@ -293,13 +287,7 @@ static weft_code unpack_frames(json_t *json, const char *path, weft_session *ses
 
 static weft_code unpack_session(json_t *root, const char *path, weft_session *s, weft_error *error)
 {
-    json_int_t version = 0;
     errno = 0;
-    if (json_unpack(root, "{sI}", "weft_session", &version) != 0)
-        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' is no session", path);
-    if (version != SESSION_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of version %lld, this program reads version %d",
-                         path, (long long)version, SESSION_VERSION);
     WEFT_TRY(unpack_fields(root, path, s, error));
     WEFT_TRY(check_values(s, path, error));
     if (json_object_get(root, "colour"))
@@ -314,7 +302,7 @@ static weft_code read_session_json(weft_session *session, weft_error *error)
     char path[PATH_MAX];
     json_t *root = NULL;
     session_path(session, path);
-    WEFT_TRY(weft_json_read(path, MAX_SESSION_BYTES, &root, error));
+    WEFT_TRY(weft_json_read_kind(path, MAX_SESSION_BYTES, &kind, &root, error));
     weft_code code = unpack_session(root, path, session, error);
     json_decref(root);
     return code;

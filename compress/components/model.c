@@ -7,7 +7,7 @@
 /* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/components.md). */
 static const struct {
     int light_side, view_side;
-    float light_smoothness, view_smoothness, doubt;
+    float light_smoothness, view_smoothness, view_variance_threshold;
 } usual[] = {
     [WEFT_COMPONENTS_OF_LIGHT] = {16, 16, 1e-2f, 3e-3f, 10},
     [WEFT_COMPONENTS_OF_HALF_VECTOR] = {16, 10, 1e-3f, 3e-3f, 10},
@@ -74,7 +74,7 @@ weft_code weft_component_model_create(const weft_component_images *images, const
                              .view_side = usual[kind].view_side,
                              .light_smoothness = usual[kind].light_smoothness,
                              .view_smoothness = usual[kind].view_smoothness,
-                             .doubt = usual[kind].doubt,
+                             .view_variance_threshold = usual[kind].view_variance_threshold,
                              .least_cosine = least_cosine(images)};
     WEFT_TRY(weft_components_create(&shape, width, height, level_count, result, error));
     fill_directions(images, *result);

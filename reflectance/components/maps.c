@@ -128,14 +128,14 @@ static weft_code make_view_maps(const weft_components *components, view_maps *of
         return weft_fail_memory(error, "maps of components", values * sizeof *of->node);
     for (size_t i = 0; i < views; i++)
         of->place[i] = weft_place_of_direction(direction_at(components->view, i));
-    return map_views(components, of->node, components->doubt > 0 ? of->variance : NULL, error);
+    return map_views(components, of->node, components->view_variance_threshold > 0 ? of->variance : NULL, error);
 }
 
 /* What a view says of a node of its map counts for less the less its images tell of it: beyond them the map is but
  * continued, and other views may know better. */
-static float trust(float variance, float doubt)
+static float trust(float variance, float view_variance_threshold)
 {
-    float ratio = 1 + variance / doubt;
+    float ratio = 1 + variance / view_variance_threshold;
     return 1 / (ratio * ratio);
 }
 
@@ -153,7 +153,9 @@ static weft_code solve_light_node(const view_maps *of, size_t light, const node_
     size_t views = (size_t)components->view_count,
            nodes = (size_t)components->view_side * (size_t)components->view_side;
     for (size_t view = 0; view < views; view++) {
-        bench->weight[view] = components->doubt > 0 ? trust(of->variance[view * lights + light], components->doubt) : 1;
+        bench->weight[view] = components->view_variance_threshold > 0
+                                  ? trust(of->variance[view * lights + light], components->view_variance_threshold)
+                                  : 1;
         memcpy(bench->value + view * series, of->node + (view * lights + light) * series,
                series * sizeof *bench->value);
     }

@@ -8,7 +8,7 @@ void fuzz_write_seed(const char *path)
 {
     const weft_camera camera = {.width = 416, .height = 416, .fx = 1920, .fy = 1920, .cx = 207.5, .cy = 207.5};
     weft_poses_file file = {.poses = weft_rig_poses_nominal(&camera, 500), .rms_px = 0.5, .scatter_mm = 0.1};
-    const weft_poses_shot shot[] = {{"a.tif", NULL}, {"b.tif", "the target is not found"}};
+    const weft_lens_photograph shot[] = {{"a.tif", NULL}, {"b.tif", "the target is not found"}};
     const char *const undetermined[] = {"sample phi does not turn"};
     file.poses.joint[1].uneven[1] = 0.001;
     if (weft_poses_write(path, &file, shot, 2, undetermined, 1, NULL) != WEFT_OK)

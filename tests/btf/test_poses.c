@@ -32,7 +32,7 @@ static weft_poses_file example(void)
 
 static void store(const weft_poses_file *file)
 {
-    const weft_poses_shot shot[] = {{"a.tif", NULL}, {"b.tif", "it was moved"}};
+    const weft_lens_photograph shot[] = {{"a.tif", NULL}, {"b.tif", "it was moved"}};
     const char *const undetermined[] = {"sample phi does not turn"};
     weft_error error = {0};
     expect_ok(weft_poses_write("rig.poses.json", file, shot, 2, undetermined, 1, &error), &error);

@@ -48,7 +48,7 @@ static void kinds_are_those_of_the_files(void **state)
     assert_int_equal(squared.material.components->kind, WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED);
     assert_int_equal(squared.material.components->image_count, 21);
     assert_int_equal(squared.material.components->first[2], 14);
-    assert_float_equal(squared.material.components->doubt, 10, 0);
+    assert_float_equal(squared.material.components->view_variance_threshold, 10, 0);
     close_file(&plain);
     close_file(&squared);
 }

@@ -59,7 +59,7 @@ static int count_images(void)
 }
 
 /* Relative RMSE where the blind views would have seen it. */
-static double error_of_what_was_not_seen(float doubt)
+static double error_of_what_was_not_seen(float view_variance_threshold)
 {
     const weft_components shape = {.kind = WEFT_COMPONENTS_OF_HALF_VECTOR,
                                    .component_count = WEFT_COMPONENTS_GROUP,
@@ -70,7 +70,7 @@ static double error_of_what_was_not_seen(float doubt)
                                    .light_smoothness = 1e-3f,
                                    .view_smoothness = 3e-3f,
                                    .least_cosine = 0.2f,
-                                   .doubt = doubt};
+                                   .view_variance_threshold = view_variance_threshold};
     weft_error error = {0};
     weft_components *components = NULL;
     weft_component_maps maps;
