@@ -1,7 +1,7 @@
 #include "relief/move.h"
 
 #include "base/integers.h"
-#include "btf/dataset/derived.h"
+#include "btf/dataset/write_blocks.h"
 #include "reflectance/relief/relief.h"
 
 #include <math.h>

@@ -270,18 +270,6 @@ weft_code weft_dataset_file_write_figures(const weft_dataset_file *file, const w
     return done ? WEFT_OK : fail(file->path, error);
 }
 
-weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error)
-{
-    hid_t type = text_type(strlen(text)), space = H5Screate(H5S_SCALAR);
-    hid_t object = create_array(file->file, "provenance", type, space);
-    bool done = object >= 0 && H5Dwrite(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
-    weft_code code = done ? WEFT_OK : fail(file->path, error);
-    H5Dclose(object);
-    H5Sclose(space);
-    H5Tclose(type);
-    return code;
-}
-
 static bool drop_attribute(hid_t file, const char *name)
 {
     return H5Aexists(file, name) == 0 || H5Adelete(file, name) >= 0;
@@ -308,11 +296,18 @@ weft_code weft_dataset_file_write_relief(const weft_dataset_file *file, double p
     return done ? WEFT_OK : fail(file->path, error);
 }
 
-weft_code weft_dataset_file_replace_provenance(const weft_dataset_file *file, const char *text, weft_error *error)
+weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error)
 {
     if (!drop(file->file, "provenance"))
         return fail(file->path, error);
-    return weft_dataset_file_write_provenance(file, text, error);
+    hid_t type = text_type(strlen(text)), space = H5Screate(H5S_SCALAR);
+    hid_t object = create_array(file->file, "provenance", type, space);
+    bool done = object >= 0 && H5Dwrite(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
+    weft_code code = done ? WEFT_OK : fail(file->path, error);
+    H5Dclose(object);
+    H5Sclose(space);
+    H5Tclose(type);
+    return code;
 }
 
 weft_code weft_dataset_file_close(weft_dataset_file *file, weft_error *error)

@@ -40,15 +40,12 @@ weft_code weft_dataset_file_write_frames(const weft_dataset_file *file, const we
 weft_code weft_dataset_file_write_figures(const weft_dataset_file *file, const weft_dataset_layout *layout,
                                           weft_error *error);
 
-/* Errors: WEFT_SYSTEM. */
+/* Writes the provenance, in the place of one that the file has. Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error);
 
 /* A plane and heights (NULL: none) in the place of those that the file has. Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_file_write_relief(const weft_dataset_file *file, double plane_mm,
                                          const weft_dataset_heights *heights, weft_error *error);
-
-/* Replaces the provenance. Errors: WEFT_SYSTEM. */
-weft_code weft_dataset_file_replace_provenance(const weft_dataset_file *file, const char *text, weft_error *error);
 
 /* Closes everything. Errors: WEFT_SYSTEM where what HDF5 still held cannot be written. */
 weft_code weft_dataset_file_close(weft_dataset_file *file, weft_error *error);

@@ -70,7 +70,7 @@ static weft_code change(const char *copy, const char *output, double plane_mm, c
     WEFT_TRY(weft_dataset_file_open(copy, output, &file, error));
     weft_code code = weft_dataset_file_write_relief(&file, plane_mm, heights, error);
     if (code == WEFT_OK)
-        code = weft_dataset_file_replace_provenance(&file, provenance, error);
+        code = weft_dataset_file_write_provenance(&file, provenance, error);
     weft_code closed = weft_dataset_file_close(&file, code == WEFT_OK ? error : NULL);
     return code == WEFT_OK ? closed : code;
 }

@@ -80,6 +80,17 @@ weft_code weft_dataset_writer_put_image(weft_dataset_writer *writer, int image, 
     return weft_scratch_put(&writer->scratch, image, samples, mask, error);
 }
 
+/* Keeps a copy in the place of the one before. */
+static weft_code keep_floats(float **kept, const float *values, size_t count, const char *what, weft_error *error)
+{
+    free(*kept);
+    *kept = malloc(count * sizeof *values);
+    if (!*kept)
+        return weft_fail_memory(error, what, count * sizeof *values);
+    memcpy(*kept, values, count * sizeof *values);
+    return WEFT_OK;
+}
+
 weft_code weft_dataset_writer_put_opacity(weft_dataset_writer *writer, const float *opacity, weft_error *error)
 {
     const weft_dataset_layout *layout = &writer->layout;
@@ -89,40 +100,27 @@ weft_code weft_dataset_writer_put_opacity(weft_dataset_writer *writer, const flo
             return weft_fail(error, WEFT_BAD_INPUT, "'%s': opacity %g of view %zu is not in 0 to 1", writer->path,
                              opacity[i], i % views);
     }
-    free(writer->opacity);
-    writer->opacity = malloc(count * sizeof *opacity);
-    if (!writer->opacity)
-        return weft_fail_memory(error, "opacity", count * sizeof *opacity);
-    memcpy(writer->opacity, opacity, count * sizeof *opacity);
-    return WEFT_OK;
+    return keep_floats(&writer->opacity, opacity, count, "opacity", error);
 }
 
 weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const float *frames, weft_error *error)
 {
     const weft_dataset_layout *layout = &writer->layout;
-    size_t count = (size_t)layout->width * (size_t)layout->height, bytes = 6 * count * sizeof *frames;
+    size_t count = (size_t)layout->width * (size_t)layout->height;
     WEFT_TRY(weft_dataset_frames_check(frames, count, 0, layout->width, writer->path, WEFT_BAD_INPUT, error));
-    free(writer->frames);
-    writer->frames = malloc(bytes);
-    if (!writer->frames)
-        return weft_fail_memory(error, "frames", bytes);
-    memcpy(writer->frames, frames, bytes);
-    return WEFT_OK;
+    return keep_floats(&writer->frames, frames, 6 * count, "frames", error);
 }
 
 weft_code weft_dataset_writer_put_heights(weft_dataset_writer *writer, const weft_dataset_heights *heights,
                                           weft_error *error)
 {
-    size_t bytes = (size_t)heights->width * (size_t)heights->height * sizeof *heights->value;
+    float *value = writer->heights.value;
     WEFT_TRY(weft_dataset_heights_check(&writer->layout, heights, writer->path, WEFT_BAD_INPUT, error));
-    weft_dataset_heights_free(&writer->heights);
-    float *value = malloc(bytes);
-    if (!value)
-        return weft_fail_memory(error, "heights", bytes);
-    memcpy(value, heights->value, bytes);
+    weft_code code =
+        keep_floats(&value, heights->value, (size_t)heights->width * (size_t)heights->height, "heights", error);
     writer->heights = *heights;
     writer->heights.value = value;
-    return WEFT_OK;
+    return code;
 }
 
 weft_code weft_dataset_writer_put_figure(weft_dataset_writer *writer, weft_image_figure figure, const double *value,

@@ -6,6 +6,8 @@
 
 #include "btf/dataset/dataset.h"
 
+#include <jansson.h>
+
 /* Size of the blocks to read and write, texels: whole chunks of the file, about 64 MiB of samples at most where a chunk
  * is not larger. Blocks lie at multiples of it. Pure. */
 void weft_dataset_block_size(const weft_dataset_layout *layout, int *width, int *height);
@@ -41,5 +43,17 @@ weft_code weft_dataset_block_writer_finish(weft_dataset_block_writer *writer, co
 
 /* Frees the writer and removes what it wrote. NULL is fine. */
 void weft_dataset_block_writer_abandon(weft_dataset_block_writer *writer);
+
+/* ---- Of a dataset that is computed from another one ---- */
+
+/* Refuses an output that is the file of the dataset itself; `loss` ends the message, as in "the tile would replace it".
+ * Errors: WEFT_BAD_USAGE. */
+weft_code weft_derived_dataset_check(const weft_dataset *dataset, const char *output, const char *loss,
+                                     weft_error *error);
+
+/* Finishes the writer with the provenance of `source`, to which `made` is added under `name`: what was done. Frees the
+ * writer and takes the reference to `made`, also on failure. Errors: those of weft_dataset_block_writer_finish. */
+weft_code weft_derived_dataset_finish(weft_dataset_block_writer *writer, const weft_dataset_layout *source,
+                                      const char *name, json_t *made, weft_error *error);
 
 #endif

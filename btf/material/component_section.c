@@ -1,5 +1,7 @@
 #include "btf/material/component_section.h"
 
+#include "base/integers.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -66,11 +68,6 @@ void weft_components_section_write(const weft_components *components, uint8_t *b
     weft_component_values_write(&values, bytes);
 }
 
-static int limited_int(uint32_t value)
-{
-    return value > INT32_MAX ? INT32_MAX : (int)value;
-}
-
 static weft_components shape_of(const uint8_t *bytes)
 {
     uint32_t whole[6];
@@ -79,11 +76,11 @@ static weft_components shape_of(const uint8_t *bytes)
     memcpy(real, bytes + sizeof whole, sizeof real);
     return (weft_components){.kind = whole[0] < WEFT_COMPONENTS_KINDS ? (weft_components_kind)whole[0]
                                                                       : WEFT_COMPONENTS_KINDS,
-                             .component_count = limited_int(whole[1]),
-                             .view_count = limited_int(whole[2]),
-                             .image_count = limited_int(whole[3]),
-                             .light_side = limited_int(whole[4]),
-                             .view_side = limited_int(whole[5]),
+                             .component_count = weft_limited_int(whole[1]),
+                             .view_count = weft_limited_int(whole[2]),
+                             .image_count = weft_limited_int(whole[3]),
+                             .light_side = weft_limited_int(whole[4]),
+                             .view_side = weft_limited_int(whole[5]),
                              .light_smoothness = real[0],
                              .view_smoothness = real[1],
                              .least_cosine = real[2],

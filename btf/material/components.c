@@ -94,6 +94,13 @@ weft_code weft_components_create(const weft_components *shape, int width, int he
     return code;
 }
 
+static void free_level(weft_components_level *level)
+{
+    free(level->coefficient);
+    free(level->ceiling);
+    free(level->floor);
+}
+
 void weft_components_free(weft_components *components)
 {
     if (!components)
@@ -103,28 +110,21 @@ void weft_components_free(weft_components *components)
     free(components->first);
     free(components->scale);
     free(components->value);
-    for (int k = 0; k < components->level_count; k++) {
-        free(components->level[k].coefficient);
-        free(components->level[k].ceiling);
-        free(components->level[k].floor);
-    }
+    for (int k = 0; k < components->level_count; k++)
+        free_level(&components->level[k]);
     free(components);
 }
 
 void weft_components_drop_finest(weft_components *components)
 {
-    free(components->level[0].coefficient);
-    free(components->level[0].ceiling);
-    free(components->level[0].floor);
+    free_level(&components->level[0]);
     memmove(components->level, components->level + 1, (size_t)--components->level_count * sizeof *components->level);
 }
 
 void weft_components_drop_coarsest(weft_components *components)
 {
     weft_components_level *last = &components->level[--components->level_count];
-    free(last->coefficient);
-    free(last->ceiling);
-    free(last->floor);
+    free_level(last);
     *last = (weft_components_level){0};
 }
 

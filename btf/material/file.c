@@ -1,6 +1,7 @@
 #include "btf/material/file.h"
 
 #include "base/atomic_file.h"
+#include "base/integers.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,11 +26,6 @@ static uint64_t u64_at(const unsigned char *bytes)
     uint64_t value;
     memcpy(&value, bytes, sizeof value);
     return value;
-}
-
-static int limited_int(uint32_t value)
-{
-    return value > INT32_MAX ? INT32_MAX : (int)value;
 }
 
 weft_code weft_material_file_load(weft_material_file *file, weft_error *error)
@@ -94,7 +90,7 @@ static weft_code read_features(weft_material_file *file, weft_error *cause)
     bool has_components = file->features & WEFT_FEATURE_COMPONENTS;
     file->kind = weft_sections_of_version_2;
     file->kind_count = WEFT_FORMAT_KINDS;
-    file->component_count = limited_int(components);
+    file->component_count = weft_limited_int(components);
     if (!(file->features & (WEFT_FEATURE_LOBES | WEFT_FEATURE_COMPONENTS)))
         return weft_fail(cause, WEFT_BAD_INPUT, "it has neither lobes nor components");
     if (has_components != (components > 0) || components > WEFT_COMPONENTS_MAX)
@@ -110,11 +106,12 @@ static weft_code read_features(weft_material_file *file, weft_error *cause)
 static weft_code read_shape(weft_material_file *file, weft_material *material, weft_error *error)
 {
     const unsigned char *b = file->bytes;
-    int level_count = limited_int(u32_at(b + 32)), lights = file->version == 1 ? limited_int(u32_at(b + 44)) : 0;
+    int level_count = weft_limited_int(u32_at(b + 32)),
+        lights = file->version == 1 ? weft_limited_int(u32_at(b + 44)) : 0;
     weft_error cause = {0};
-    weft_code code =
-        weft_material_set_shape(material, limited_int(u32_at(b + 24)), limited_int(u32_at(b + 28)), level_count,
-                                limited_int(u32_at(b + 36)), limited_int(u32_at(b + 40)), lights, &cause);
+    weft_code code = weft_material_set_shape(
+        material, weft_limited_int(u32_at(b + 24)), weft_limited_int(u32_at(b + 28)), level_count,
+        weft_limited_int(u32_at(b + 36)), weft_limited_int(u32_at(b + 40)), lights, &cause);
     if (code == WEFT_OK && level_count == 0)
         code = weft_fail(&cause, WEFT_BAD_INPUT, "number of levels is 0, must be at least 1");
     memcpy(&material->texel_pitch_mm, b + 48, sizeof material->texel_pitch_mm);

@@ -1,5 +1,7 @@
 #include "btf/material/heights.h"
 
+#include "base/integers.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -114,11 +116,6 @@ void weft_material_heights_write(const weft_material_heights *heights, uint8_t *
     memcpy(bytes + HEADER_BYTES, heights->code, weft_material_heights_size(heights) - HEADER_BYTES);
 }
 
-static int limited_int(uint32_t value)
-{
-    return value > INT32_MAX ? INT32_MAX : (int)value;
-}
-
 static weft_material_heights shape_of(const uint8_t *bytes)
 {
     uint32_t whole[3];
@@ -127,9 +124,9 @@ static weft_material_heights shape_of(const uint8_t *bytes)
     memcpy(whole, bytes, sizeof whole);
     memcpy(range, bytes + 32, sizeof range);
     memcpy(shape.size_mm, bytes + 16, sizeof shape.size_mm);
-    shape.width = limited_int(whole[0]);
-    shape.height = limited_int(whole[1]);
-    shape.level_count = limited_int(whole[2]);
+    shape.width = weft_limited_int(whole[0]);
+    shape.height = weft_limited_int(whole[1]);
+    shape.level_count = weft_limited_int(whole[2]);
     shape.low_mm = range[0];
     shape.high_mm = range[1];
     shape.code = NULL;

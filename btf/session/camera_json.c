@@ -1,8 +1,7 @@
 #include "btf/session/camera_json.h"
 
+#include "base/integers.h"
 #include "base/text/json_text.h"
-
-#include <limits.h>
 
 json_t *weft_camera_pack(const weft_camera *c)
 {
@@ -15,11 +14,6 @@ json_t *weft_camera_pack(const weft_camera *c)
         weft_json_put(&camera, "k3", json_real(c->k3));
     }
     return camera;
-}
-
-int weft_limited_int(json_int_t value)
-{
-    return value > INT_MAX ? INT_MAX : value < INT_MIN ? INT_MIN : (int)value;
 }
 
 bool weft_camera_unpack(json_t *json, weft_camera *c, json_error_t *cause)

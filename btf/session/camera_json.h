@@ -21,7 +21,4 @@ json_t *weft_lens_pack_errors(const double error[WEFT_LENS_PARAMETERS]);
 /* Puts the lists "used" and "left_out" of photographs, as weft_json_put does. */
 void weft_lens_put_photographs(json_t **root, const weft_lens_photograph *photograph, int count);
 
-/* The nearest int: a value beyond is out of every range, too. */
-int weft_limited_int(json_int_t value);
-
 #endif

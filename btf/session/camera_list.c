@@ -1,6 +1,5 @@
 #include "btf/session/camera_list.h"
 
-#include "base/atomic_file.h"
 #include "base/text/json_text.h"
 
 #include <limits.h>

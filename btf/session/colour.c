@@ -1,6 +1,5 @@
 #include "btf/session/colour.h"
 
-#include "base/atomic_file.h"
 #include "base/text/json_text.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
 #include "btf/session/lens.h"
 
-#include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "btf/session/camera_json.h"
 

@@ -1,6 +1,6 @@
 #include "btf/session/session.h"
 
-#include "base/atomic_file.h"
+#include "base/integers.h"
 #include "base/text/json_text.h"
 #include "btf/session/camera_json.h"
 

@@ -1,7 +1,7 @@
 #include "compress/bard/predict.h"
 
 #include "base/integers.h"
-#include "btf/dataset/derived.h"
+#include "btf/dataset/write_blocks.h"
 #include "btf/direction/direction.h"
 #include "compress/bard/texel_table.h"
 

@@ -1,5 +1,5 @@
-#include "btf/dataset/derived.h"
 #include "btf/dataset/read_blocks.h"
+#include "btf/dataset/write_blocks.h"
 #include "edit/tile/mean.h"
 #include "edit/tile/tile.h"
 
