@@ -72,7 +72,7 @@ static void say_lens(const photographs_command *command, const weft_lens_estimat
     else
         weft_command_say(&command->common,
                          "lens: focal length %.1f pixels, as %s; k1 %.4f, k2 %.4f; markers lie %.2f pixels off, RMS",
-                         c->fx, lens->knowledge == WEFT_LENS_KNOWN ? "--lens says" : "the camera wrote it", c->k1,
+                         c->fx, lens->knowledge == WEFT_LENS_KNOWN ? "--lens gives it" : "the camera wrote it", c->k1,
                          c->k2, lens->rms_px);
 }
 
@@ -89,8 +89,7 @@ static void say_outcome(const photographs_command *command, const weft_photograp
     weft_command_say(&command->common, "masks: %s", words);
     if (command->settings.colour)
         weft_command_say(&command->common,
-                         "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "
-                         "the mean",
+                         "colours: linear sRGB; mean error of a held-out patch of the chart: %.2f CIEDE2000",
                          command->settings.colour->left_out.mean);
     weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %.0f s", command->output,
                      command->settings.width, command->settings.height, set->used_count, set->count, set->seconds);

@@ -144,9 +144,10 @@ static weft_code open_source(const char *source, const weft_import_options *opti
         return weft_collection_open(source, options->lights, options->skip_bad, collection, error);
     }
     if (options->lights)
-        return weft_fail(error, WEFT_BAD_USAGE, "--lights is of a folder of photographs: '%s' says its lights", source);
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "--lights applies to a folder of photographs; '%s' holds its own lights", source);
     if (options->colours != WEFT_IMPORT_AS_SAID)
-        return weft_fail(error, WEFT_BAD_USAGE, "--colours is of photographs: '%s' says its colours", source);
+        return weft_fail(error, WEFT_BAD_USAGE, "--colours applies to photographs; '%s' holds its own colours", source);
     *collection = (weft_collection){.leaves_out_doubles = options->skip_bad};
     WEFT_TRY(weft_bonn_file_open(source, *bonn, error));
     weft_code code = weft_collection_of_bonn(source, *bonn, collection, error);

@@ -1,4 +1,4 @@
-/* One run of weft_import: what its workers share while they put images into the dataset. Private to the room. */
+/* One run of weft_import: what its workers share while they put images into the dataset. Private to this folder. */
 #ifndef WEFT_IMPORT_RUN_H
 #define WEFT_IMPORT_RUN_H
 

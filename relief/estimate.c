@@ -270,13 +270,11 @@ static void note_features(estimate *e, const weft_relief_views *views, const wef
     report->repeats = features->repeats;
 }
 
-static void name_views(estimate *e, const weft_relief_views *views)
+static void name_views(estimate *e)
 {
     e->report->compared_count = e->compared_count;
-    for (int i = 0; i < e->compared_count; i++) {
-        e->report->view[i].number = views->number[e->compared[i].view];
+    for (int i = 0; i < e->compared_count; i++)
         e->report->view[i].direction = e->features.direction[e->compared[i].view];
-    }
 }
 
 static weft_code find(estimate *e, const weft_relief_options *options, weft_error *error)
@@ -329,7 +327,7 @@ static weft_code estimate_with(weft_dataset *dataset, const weft_relief_views *v
     note_features(e, views, options);
     WEFT_TRY(note_plane(weft_dataset_get_layout(dataset), e->report, error));
     WEFT_TRY(find_compared(e, weft_dataset_path(dataset), error));
-    name_views(e, views);
+    name_views(e);
     return find(e, options, error);
 }
 

@@ -1,5 +1,5 @@
 /* The light vector of every view and place (its values under all lights, red, green and blue), on the eight principal
- * components of all of them: what parallax moves, in a thirtieth of the bytes. Private to the room. */
+ * components of all of them: what parallax moves, in a thirtieth of the bytes. Private to this folder. */
 #ifndef WEFT_RELIEF_FEATURES_H
 #define WEFT_RELIEF_FEATURES_H
 
@@ -15,7 +15,6 @@ enum { WEFT_MOST_LIGHTS = 128 };
 
 typedef struct weft_relief_views {
     int view_count, light_count;
-    int *number;          /* [view_count] of the view in the dataset */
     weft_vec3 *direction; /* [view_count] */
     int *image;           /* [view_count][light_count] the lights in the same order for every view */
     float *cosine;        /* [light_count] what turns a sample into reflectance times cosine */

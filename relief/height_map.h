@@ -1,4 +1,4 @@
-/* The heights of a material, from the costs of a sweep. Private to the room. */
+/* The heights of a material, from the costs of a sweep. Private to this folder. */
 #ifndef WEFT_RELIEF_HEIGHT_MAP_H
 #define WEFT_RELIEF_HEIGHT_MAP_H
 

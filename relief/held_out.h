@@ -1,5 +1,5 @@
 /* How well the other photographs tell one of a view that is left out: through heights, a plane, or the plane of the
- * texels. Private to the room. */
+ * texels. Private to this folder. */
 #ifndef WEFT_RELIEF_HELD_OUT_H
 #define WEFT_RELIEF_HELD_OUT_H
 

@@ -38,7 +38,6 @@ typedef struct weft_relief_errors {
 } weft_relief_errors;
 
 typedef struct weft_relief_view {
-    int number; /* in the dataset */
     weft_vec3 direction;
     weft_relief_errors error;
 } weft_relief_view;

@@ -1,4 +1,4 @@
-/* A sweep of heights: how badly the views agree at each. Private to the room.
+/* A sweep of heights: how badly the views agree at each. Private to this folder.
  *
  * At a height h, view k shows of the grid point p what it holds at q = p - h s(k) (reflectance/relief/relief.h). With
  * f_k its features there and m their mean, the cost is the mean over the views of

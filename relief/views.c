@@ -85,7 +85,6 @@ static weft_code match_views(const weft_dataset_layout *layout, const char *path
         int *image = views->image + (long)views->view_count * views->light_count;
         if (!match_view(layout, view, light, views->light_count, scratch, image))
             continue;
-        views->number[views->view_count] = view;
         views->direction[views->view_count++] = layout->view[view];
     }
     free(scratch);
@@ -103,12 +102,11 @@ weft_code weft_relief_views_find(const weft_dataset_layout *layout, const char *
     if (layout->distance == WEFT_NEAR)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' has near lights and views: heights need views from far", path);
     size_t count = (size_t)layout->view_count, bytes = count * WEFT_MOST_LIGHTS * sizeof *views->image;
-    views->number = malloc(count * sizeof *views->number);
     views->direction = malloc(count * sizeof *views->direction);
     views->image = malloc(bytes);
     views->cosine = malloc(WEFT_MOST_LIGHTS * sizeof *views->cosine);
     weft_code code = WEFT_OK;
-    if (!views->number || !views->direction || !views->image || !views->cosine)
+    if (!views->direction || !views->image || !views->cosine)
         code = weft_fail_memory(error, "views", bytes);
     if (code == WEFT_OK)
         code = match_views(layout, path, views, error);
@@ -119,7 +117,6 @@ weft_code weft_relief_views_find(const weft_dataset_layout *layout, const char *
 
 void weft_relief_views_free(weft_relief_views *views)
 {
-    free(views->number);
     free(views->direction);
     free(views->image);
     free(views->cosine);

@@ -1,4 +1,4 @@
-/* The samples of all texels in one view, gathered until their noise is low enough. Private to the room. */
+/* The samples of all texels in one view, gathered until their noise is low enough. Private to this folder. */
 #ifndef WEFT_GEOMETRY_ACQUISITION_VIEW_SAMPLES_H
 #define WEFT_GEOMETRY_ACQUISITION_VIEW_SAMPLES_H
 

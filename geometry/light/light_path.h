@@ -1,4 +1,4 @@
-/* Paths of light through endless cloth, from the camera on (Kajiya 1986). Private to the room. */
+/* Paths of light through endless cloth, from the camera on (Kajiya 1986). Private to this folder. */
 #ifndef WEFT_GEOMETRY_LIGHT_LIGHT_PATH_H
 #define WEFT_GEOMETRY_LIGHT_LIGHT_PATH_H
 

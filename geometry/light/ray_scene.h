@@ -1,5 +1,5 @@
 /* What a ray meets in endless cloth: the triangles of a tile in Embree, repeated periodically in x and y.
- * Private to the room. */
+ * Private to this folder. */
 #ifndef WEFT_GEOMETRY_LIGHT_RAY_SCENE_H
 #define WEFT_GEOMETRY_LIGHT_RAY_SCENE_H
 

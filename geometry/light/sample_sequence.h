@@ -1,5 +1,5 @@
 /* Well spread points that depend on nothing but their numbers: the (0, 2)-sequence of Sobol with hashed Owen scrambling
- * and shuffling (Burley 2020). Any thread computes any of them. Pure functions, private to the room. */
+ * and shuffling (Burley 2020). Any thread computes any of them. Pure functions, private to this folder. */
 #ifndef WEFT_GEOMETRY_LIGHT_SAMPLE_SEQUENCE_H
 #define WEFT_GEOMETRY_LIGHT_SAMPLE_SEQUENCE_H
 

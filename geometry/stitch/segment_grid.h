@@ -1,4 +1,4 @@
-/* Which segments of yarn pass near a place: a periodic grid of buckets. Private to the room. */
+/* Which segments of yarn pass near a place: a periodic grid of buckets. Private to this folder. */
 #ifndef WEFT_GEOMETRY_STITCH_SEGMENT_GRID_H
 #define WEFT_GEOMETRY_STITCH_SEGMENT_GRID_H
 

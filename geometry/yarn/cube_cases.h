@@ -6,7 +6,7 @@
  * manifold, ambiguous faces included: there, the inside corners are kept apart.
  *
  * Corner c lies at x = c & 1, y = c >> 1 & 1, z = c >> 2 & 1. Edge e runs along the axis e / 4 from the corner whose
- * two other coordinates are the bits of e % 4, the lower axis first. Private to the room. */
+ * two other coordinates are the bits of e % 4, the lower axis first. Private to this folder. */
 #ifndef WEFT_GEOMETRY_YARN_CUBE_CASES_H
 #define WEFT_GEOMETRY_YARN_CUBE_CASES_H
 

@@ -5,7 +5,7 @@
  *     d(q) = min(radii) smin_k(|q - c_k| - rho_p),  rho_p = s / (1 + s),  s = sin(pi / n),
  * the c_k on a circle of radius 1 - rho_p that turns with the twist, and a core between them. Branches of one yarn are
  * joined by the same smooth minimum over `blend` mm (smin(a, b) = min(a, b) - max(blend - |a - b|, 0)^2 / (4 blend)),
- * different yarns by the plain minimum. Private to the room; all functions are pure. */
+ * different yarns by the plain minimum. Private to this folder; all functions are pure. */
 #ifndef WEFT_GEOMETRY_YARN_SOLID_FIELD_H
 #define WEFT_GEOMETRY_YARN_SOLID_FIELD_H
 

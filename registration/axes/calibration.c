@@ -8,7 +8,7 @@
 
 static const double place_deg = 0.5;
 
-/* Beside the home: what a joint's line needs to be told. */
+/* Beside the home: what determines the line of a joint. */
 enum { FEWEST_PLACES = 3 };
 
 static const double far_ratio = 3, far_px = 0.3;
@@ -52,15 +52,15 @@ static void weigh(const weft_axes_fit *with, int index, double *value, double *e
 static weft_code report_fixed(weft_lines *lines, const weft_axes_fit *with, const weft_camera *camera, int index,
                               weft_error *error)
 {
-    /* An unknown that is still half as uncertain as before was not told. */
-    const double untold = 0.5;
+    /* An unknown that is still half as uncertain as before was not determined. */
+    const double undetermined = 0.5;
     double value, deviation;
     weft_term term = weft_term_of(index);
     weigh(with, index, &value, &deviation);
     if (term.kind == WEFT_TERM_LENS)
         return weft_lines_add(lines, error, "The lens stays as it is: fitting it does not explain these shots better.");
     const char *joint = weft_joint_text[term.joint], *text = term_text[term.kind];
-    if (deviation > untold)
+    if (deviation > undetermined)
         return weft_lines_add(lines, error, "These shots cannot determine the %s of %s; fixed at 0.", text, joint);
     double unit = weft_term_unit(camera, term.kind, 0);
     if (term.kind == WEFT_TERM_SCALE)
@@ -86,7 +86,7 @@ static weft_code report_bearing(weft_lines *lines, const weft_joint *joint, cons
                                 const char *name, weft_error *error)
 {
     if (deviation->scale > 0)
-        WEFT_TRY(weft_lines_add(lines, error, "%s: turns %.5f +- %.5f times what its scale says", name,
+        WEFT_TRY(weft_lines_add(lines, error, "%s: turns %.5f +- %.5f times as far as its scale reads", name,
                                 1 + joint->scale, deviation->scale));
     if (deviation->uneven_rad > 0)
         WEFT_TRY(weft_lines_add(lines, error, "%s: its scale is uneven by %.3f +- %.3f degrees, once a turn", name,

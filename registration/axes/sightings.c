@@ -96,8 +96,7 @@ static weft_code prepare(work *w, weft_error *error)
     const weft_session *session = w->session;
     if (!session->turns)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' does not say where its axes stood: it was taken by a rig without axes, or by an older "
-                         "Weft",
+                         "'%s' does not record the turns of its axes: its rig has none, or an older Weft took it",
                          session->folder);
     w->fault = calloc((size_t)session->shot_count, sizeof *w->fault);
     if (!w->fault)

@@ -182,7 +182,7 @@ static weft_code check_colours(const weft_colour_report *report, const char *pat
         return WEFT_OK;
     return weft_fail(error, WEFT_BAD_INPUT,
                      "'%s': the colours are not those of the chart: they differ by %.1f CIEDE2000 after the best "
-                     "matrix; is it the chart that --chart says, uncovered, in one light?",
+                     "matrix; is it the chart of --chart, uncovered, in one light?",
                      path, report->colour.fitted.mean);
 }
 

@@ -121,7 +121,7 @@ static weft_code warn_of_lens(weft_lens_report *r, weft_error *error)
         WEFT_TRY(
             weft_lines_add(&r->warnings, error,
                            "corners stray in a pattern of %.2f pixels, far above their noise of %.2f: is the board "
-                           "flat, and is it the one that --board says?",
+                           "flat, and does it have the sizes of --board?",
                            r->pattern, r->noise));
     if (r->focal_error > poor_focal_error)
         WEFT_TRY(

@@ -174,13 +174,12 @@ static weft_code note_misfits(weft_photograph_set *set, weft_error *error)
     const double most = 3;
     if (set->lamps.ball_misfit > most)
         WEFT_TRY(weft_lines_add(&set->notes, error,
-                                "the highlights on the balls lie %.0f standard errors off, median: is the opening, or "
-                                "the diameter of the balls, what was said?",
+                                "the highlights on the balls lie %.0f standard errors off, median: check --opening "
+                                "and --balls",
                                 set->lamps.ball_misfit));
     if (set->lamps.pin_misfit > most)
         return weft_lines_add(&set->notes, error,
-                              "the shadows of the pin lie %.0f standard errors off, median: is the opening, or the "
-                              "height of the pin, what was said?",
+                              "the shadows of the pin lie %.0f standard errors off, median: check --opening and --pin",
                               set->lamps.pin_misfit);
     return WEFT_OK;
 }

@@ -24,7 +24,7 @@ static void leave_out_darker_of(weft_photograph_set *set, int bright)
         return;
     darker->is_darker_of_pair = true;
     snprintf(darker->remark, sizeof darker->remark,
-             "it is '%.100s', darker: it tells the tone curve, and what is clipped there",
+             "it is '%.100s' with less exposure, used for the tone curve and for what is clipped there",
              set->photograph[bright].name);
 }
 
