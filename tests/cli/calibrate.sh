@@ -115,7 +115,7 @@ expect_error 1 "the target is found in 1 of 1 shots: at least 8 are needed" cali
 sed 's/"axes": 1,/"axes": 0,/' off.json >flat.json
 expect_error 1 "no axes that calibrated poses" capture --rig flat.json --sample "$weave" --plan plan.csv --poses rig.poses.json -o no
 expect_ok capture --sample "$weave" --rig flat.json --plan one.csv --truth-images 1 --truth-size 4 -o flat
-expect_error 1 "does not say where its axes stood" calibrate flat -o no.poses.json
+expect_error 1 "does not record the turns of its axes" calibrate flat -o no.poses.json
 expect_error 1 absent.csv calibrate series --plan absent.csv -o no.poses.json
 expect_no_file no
 expect_no_file no.poses.json
