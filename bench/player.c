@@ -5,7 +5,7 @@
 #include "base/numeric/statistics.h"
 #include "bench/measure.h"
 #include "compare/pictures/picture_quality.h"
-#include "player/draw/moving.h"
+#include "player/draw/interactive.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"

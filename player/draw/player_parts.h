@@ -11,7 +11,6 @@
 #include "player/raw/texture.h"
 #include "player/scene/environment.h"
 #include "player/texture/material_texture.h"
-#include "player/texture/thread_texture.h"
 #include "player/texture/weave_texture.h"
 #include "reflectance/lafortune/lafortune.h"
 

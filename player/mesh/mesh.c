@@ -1,6 +1,7 @@
 #include "player/mesh/mesh.h"
 
-#include <math.h>
+#include "base/vector.h"
+
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,85 +58,69 @@ void weft_mesh_bounds(const weft_mesh *mesh, float centre[3], float *radius)
 
 /* ---- Normals and tangents. Sums are kept in double: a mesh may have slivers beside large faces. ---- */
 
-typedef struct vector {
-    double x[3];
-} vector;
-
-static vector difference(const float a[3], const float b[3])
+static weft_vec3 load(const float a[3])
 {
-    return (vector){{(double)a[0] - b[0], (double)a[1] - b[1], (double)a[2] - b[2]}};
+    return weft_vec3_of(a[0], a[1], a[2]);
 }
 
-static vector cross(vector a, vector b)
+static weft_vec3 difference(const float a[3], const float b[3])
 {
-    return (vector){
-        {a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2], a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
+    return weft_subtract(load(a), load(b));
 }
 
-static double dot(vector a, vector b)
+static void add_scaled(weft_vec3 *sum, weft_vec3 a, double scale)
 {
-    return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
-}
-
-static void add_scaled(vector *sum, vector a, double scale)
-{
-    for (int axis = 0; axis < 3; axis++)
-        sum->x[axis] += a.x[axis] * scale;
+    *sum = weft_add(*sum, weft_scale(a, scale));
 }
 
 /* False, and `a` unchanged, where it has no direction. */
-static bool make_unit(vector *a)
+static bool make_unit(weft_vec3 *a)
 {
-    double length = sqrt(dot(*a, *a));
+    double length = weft_length(*a);
     if (!(length > 0) || !isfinite(length))
         return false;
-    for (int axis = 0; axis < 3; axis++)
-        a->x[axis] /= length;
+    *a = weft_vec3_of(a->x / length, a->y / length, a->z / length);
     return true;
 }
 
-static void store(vector a, float result[3])
+static void store(weft_vec3 a, float result[3])
 {
-    for (int axis = 0; axis < 3; axis++)
-        result[axis] = (float)a.x[axis];
-}
-
-static vector load(const float a[3])
-{
-    return (vector){{a[0], a[1], a[2]}};
+    result[0] = (float)a.x;
+    result[1] = (float)a.y;
+    result[2] = (float)a.z;
 }
 
 weft_code weft_mesh_compute_normals(weft_mesh *mesh, const uint32_t *group, weft_error *error)
 {
     size_t count = (size_t)mesh->vertex_count;
-    vector *sum = calloc(count, sizeof *sum);
+    weft_vec3 *sum = calloc(count, sizeof *sum);
     if (!sum)
         return weft_fail_memory(error, "normals", count * sizeof *sum);
     for (int t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corner = mesh->index[t];
         const float *p = mesh->vertex[corner[0]].position;
-        vector area =
-            cross(difference(mesh->vertex[corner[1]].position, p), difference(mesh->vertex[corner[2]].position, p));
+        weft_vec3 area = weft_cross(difference(mesh->vertex[corner[1]].position, p),
+                                    difference(mesh->vertex[corner[2]].position, p));
         for (int i = 0; i < 3; i++)
             add_scaled(&sum[group ? group[corner[i]] : corner[i]], area, 1);
     }
     for (size_t i = 0; i < count; i++) {
-        vector normal = sum[group ? group[i] : i];
-        store(make_unit(&normal) ? normal : (vector){{0, 0, 1}}, mesh->vertex[i].normal);
+        weft_vec3 normal = sum[group ? group[i] : i];
+        store(make_unit(&normal) ? normal : weft_vec3_of(0, 0, 1), mesh->vertex[i].normal);
     }
     free(sum);
     return WEFT_OK;
 }
 
 /* dp/du and dp/dv of a triangle, times its area in texture space. */
-static bool texture_gradients(const weft_mesh *mesh, const uint32_t corner[3], vector *along_u, vector *along_v)
+static bool texture_gradients(const weft_mesh *mesh, const uint32_t corner[3], weft_vec3 *along_u, weft_vec3 *along_v)
 {
     const weft_vertex *a = &mesh->vertex[corner[0]], *b = &mesh->vertex[corner[1]], *c = &mesh->vertex[corner[2]];
-    vector ab = difference(b->position, a->position), ac = difference(c->position, a->position);
+    weft_vec3 ab = difference(b->position, a->position), ac = difference(c->position, a->position);
     double ab_u = (double)b->coordinate[0] - a->coordinate[0], ab_v = (double)b->coordinate[1] - a->coordinate[1];
     double ac_u = (double)c->coordinate[0] - a->coordinate[0], ac_v = (double)c->coordinate[1] - a->coordinate[1];
     double sign = ab_u * ac_v - ac_u * ab_v < 0 ? -1 : 1;
-    *along_u = *along_v = (vector){{0, 0, 0}};
+    *along_u = *along_v = weft_vec3_of(0, 0, 0);
     add_scaled(along_u, ab, sign * ac_v);
     add_scaled(along_u, ac, -sign * ab_v);
     add_scaled(along_v, ac, sign * ab_u);
@@ -143,32 +128,32 @@ static bool texture_gradients(const weft_mesh *mesh, const uint32_t corner[3], v
     return ab_u * ac_v != ac_u * ab_v;
 }
 
-static vector any_perpendicular(vector normal)
+static weft_vec3 any_perpendicular(weft_vec3 normal)
 {
-    vector axis = {{fabs(normal.x[0]) < 0.9, fabs(normal.x[0]) >= 0.9, 0}};
-    add_scaled(&axis, normal, -dot(axis, normal));
+    weft_vec3 axis = weft_vec3_of(fabs(normal.x) < 0.9, fabs(normal.x) >= 0.9, 0);
+    add_scaled(&axis, normal, -weft_dot(axis, normal));
     make_unit(&axis);
     return axis;
 }
 
-static void set_tangent(weft_vertex *vertex, vector along_u, vector along_v)
+static void set_tangent(weft_vertex *vertex, weft_vec3 along_u, weft_vec3 along_v)
 {
-    vector normal = load(vertex->normal);
-    add_scaled(&along_u, normal, -dot(along_u, normal));
+    weft_vec3 normal = load(vertex->normal);
+    add_scaled(&along_u, normal, -weft_dot(along_u, normal));
     if (!make_unit(&along_u))
         along_u = any_perpendicular(normal);
     store(along_u, vertex->tangent);
-    vertex->tangent[3] = dot(cross(normal, along_u), along_v) < 0 ? -1 : 1;
+    vertex->tangent[3] = weft_dot(weft_cross(normal, along_u), along_v) < 0 ? -1 : 1;
 }
 
 weft_code weft_mesh_compute_tangents(weft_mesh *mesh, weft_error *error)
 {
     size_t count = (size_t)mesh->vertex_count;
-    vector(*sum)[2] = calloc(count, sizeof *sum);
+    weft_vec3(*sum)[2] = calloc(count, sizeof *sum);
     if (!sum)
         return weft_fail_memory(error, "tangents", count * sizeof *sum);
     for (int t = 0; t < mesh->triangle_count; t++) {
-        vector along_u, along_v;
+        weft_vec3 along_u, along_v;
         if (!texture_gradients(mesh, mesh->index[t], &along_u, &along_v))
             continue;
         for (int i = 0; i < 3; i++) {
@@ -196,8 +181,8 @@ void weft_mesh_measure(weft_mesh *mesh)
     for (int t = 0; t < mesh->triangle_count; t++) {
         const weft_vertex *a = &mesh->vertex[mesh->index[t][0]], *b = &mesh->vertex[mesh->index[t][1]];
         const weft_vertex *c = &mesh->vertex[mesh->index[t][2]];
-        vector area = cross(difference(b->position, a->position), difference(c->position, a->position));
-        on_mesh += sqrt(dot(area, area));
+        weft_vec3 area = weft_cross(difference(b->position, a->position), difference(c->position, a->position));
+        on_mesh += sqrt(weft_dot(area, area));
         on_texture += fabs(coordinate_area(a->coordinate, b->coordinate, c->coordinate));
     }
     mesh->coordinate_length = on_texture > 0 ? sqrt(on_mesh / on_texture) : 0;

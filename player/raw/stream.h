@@ -5,8 +5,8 @@
 
 #include "base/progress.h"
 #include "player/raw/levels.h"
-#include "player/raw/relief.h"
 #include "player/texture/direction_map.h"
+#include "player/texture/relief_map.h"
 
 /* Where the stream goes. `begin` comes first and may take the directions and the relief, leaving none; then every
  * strip; then `end`. An error of the sink ends the stream. */

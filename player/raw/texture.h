@@ -3,8 +3,8 @@
 #define WEFT_PLAYER_RAW_TEXTURE_H
 
 #include "player/raw/stream.h"
-#include "player/texture/direction_texture.h"
-#include "player/texture/relief_texture.h"
+#include "player/texture/direction_map.h"
+#include "player/texture/relief_map.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 #include "btf/direction/triangulation.h"
+#include "player/gl/gl.h"
 
 #include <stdint.h>
 
@@ -39,5 +40,17 @@ typedef struct weft_direction_map {
 weft_code weft_direction_map_add(weft_direction_map *map, const weft_vec3 *direction, const int *label, int count,
                                  weft_error *error);
 void weft_direction_map_free(weft_direction_map *map);
+
+typedef struct weft_direction_texture {
+    GLuint simplex, cell;
+} weft_direction_texture;
+
+/* Errors: WEFT_SYSTEM. The caller frees with weft_direction_texture_free, also on failure. */
+weft_code weft_direction_texture_upload(const weft_direction_map *map, weft_direction_texture *texture,
+                                        weft_error *error);
+void weft_direction_texture_free(weft_direction_texture *texture);
+
+/* Binds to units `unit` and `unit` + 1. */
+void weft_direction_texture_bind(const weft_direction_texture *texture, GLuint program, int unit);
 
 #endif

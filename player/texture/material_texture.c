@@ -156,6 +156,30 @@ static weft_code upload_relief(const weft_material_relief *relief, weft_material
     return code;
 }
 
+/* ---- What a pruned material holds ---- */
+
+static weft_code upload_visibility(const weft_material_visibility *visibility, weft_visibility_texture *t,
+                                   weft_error *error)
+{
+    *t = (weft_visibility_texture){0};
+    if (!visibility)
+        return WEFT_OK;
+    t->finer_levels = visibility->finer_levels;
+    t->coarser_levels = visibility->coarser_levels;
+    t->level_count = visibility->level_count;
+    return weft_gl_texture((weft_texture_format){GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE}, visibility->side,
+                           visibility->side, WEFT_MATERIAL_VISIBILITY_PLACES + visibility->level_count,
+                           visibility->cell, &t->maps, error);
+}
+
+void weft_visibility_texture_bind(const weft_visibility_texture *t, GLuint program, int unit)
+{
+    weft_gl_bind(program, "seen_maps", unit, GL_TEXTURE_2D_ARRAY, t->maps);
+    weft_gl_set_float(program, "seen_finest", t->finer_levels > 0 ? 0 : -1000);
+    weft_gl_set_float(program, "seen_coarsest", t->coarser_levels > 0 ? t->level_count - 1 : 1000);
+    weft_gl_set_float(program, "seen_last_level", t->level_count - 1);
+}
+
 /* ---- The whole ---- */
 
 static weft_code upload_directions(const weft_material *material, const weft_material_relief *relief,
@@ -184,7 +208,7 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
         WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
     WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
-    WEFT_TRY(weft_visibility_texture_upload(material->visibility, &t->visibility, error));
+    WEFT_TRY(upload_visibility(material->visibility, &t->visibility, error));
     weft_material_relief relief;
     int *entry = NULL;
     WEFT_TRY(weft_material_relief_create(material, &relief, error));
@@ -208,7 +232,7 @@ void weft_material_texture_free(weft_material_texture *t)
     weft_direction_texture_free(&t->directions);
     weft_component_texture_free(&t->components);
     weft_relief_texture_free(&t->relief);
-    weft_visibility_texture_free(&t->visibility);
+    glDeleteTextures(1, &t->visibility.maps);
     *t = (weft_material_texture){0};
 }
 

@@ -3,11 +3,11 @@
 #define WEFT_PLAYER_TEXTURE_MATERIAL_TEXTURE_H
 
 #include "btf/material/material.h"
+#include "btf/material/visibility.h"
 #include "player/texture/component_texture.h"
-#include "player/texture/direction_texture.h"
+#include "player/texture/direction_map.h"
 #include "player/texture/mip_layout.h"
-#include "player/texture/relief_texture.h"
-#include "player/texture/visibility_texture.h"
+#include "player/texture/relief_map.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,6 +18,12 @@ typedef struct weft_table_texture {
     int count;   /* of directions; 0 without the table */
     int columns; /* directions side by side in a layer */
 } weft_table_texture;
+
+/* The maps of what a scene reaches of a pruned material (shader: player/draw/shaders/shade.frag.glsl). */
+typedef struct weft_visibility_texture {
+    GLuint maps; /* 0: there are none */
+    int finer_levels, coarser_levels, level_count;
+} weft_visibility_texture;
 
 /* The texels are packed into words of 32 bits, four a layer: what they share with their neighbours in memory is what
  * one fetch brings. Layer 0: the rotation from the axes of the surface to those of the texel, as a unit quaternion of
@@ -47,5 +53,8 @@ size_t weft_material_texture_bytes(const weft_material_texture *texture);
 /* Sets the uniforms of compressed.glsl, or if `factorised`, for which the material must have components, those of
  * factorised.glsl; `program` is in use. */
 void weft_material_texture_bind(const weft_material_texture *texture, GLuint program, bool factorised);
+
+/* Binds the maps to `unit`. */
+void weft_visibility_texture_bind(const weft_visibility_texture *texture, GLuint program, int unit);
 
 #endif

@@ -1,9 +1,12 @@
-/* Analytic cloth on the GPU (shader: player/draw/shaders/analytic.glsl). */
+/* Analytic cloth on the GPU: weaves (shader: player/draw/shaders/analytic.glsl) and microcylinder threads
+ * (threads.glsl). Threads have no place on the cloth: their model is a mean over them. */
 #ifndef WEFT_PLAYER_TEXTURE_WEAVE_TEXTURE_H
 #define WEFT_PLAYER_TEXTURE_WEAVE_TEXTURE_H
 
-#include "player/texture/direction_texture.h"
+#include "player/gl/gl.h"
+#include "player/texture/direction_map.h"
 #include "player/texture/weave_texels.h"
+#include "reflectance/microcylinder/microcylinder.h"
 
 #include <stddef.h>
 
@@ -31,5 +34,21 @@ size_t weft_weave_texture_bytes(const weft_weave_texture *texture);
 
 /* Sets the uniforms of analytic.glsl; `program` is in use. noise_seed 0: without noise. */
 void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program, unsigned noise_seed);
+
+typedef struct weft_thread_texture {
+    GLuint table; /* 0: none */
+} weft_thread_texture;
+
+/* Takes the place of what `texture` (zeroed at first) had, which stays on failure. Errors: WEFT_SYSTEM. The caller
+ * frees with weft_thread_texture_free. */
+weft_code weft_thread_texture_upload(const weft_microcylinder_cloth *cloth, weft_thread_texture *texture,
+                                     weft_error *error);
+void weft_thread_texture_free(weft_thread_texture *texture);
+
+/* Of graphics memory. */
+size_t weft_thread_texture_bytes(const weft_thread_texture *texture);
+
+/* Sets the uniforms of threads.glsl; `program` is in use. */
+void weft_thread_texture_bind(const weft_thread_texture *texture, GLuint program);
 
 #endif

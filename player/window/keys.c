@@ -4,8 +4,10 @@
 #include <GLFW/glfw3.h>
 #include <stdio.h>
 
-static const double exposure_step = 1.189207115; /* a quarter of a stop */
-static const double turn_step = 5 * WEFT_PI / 180, zoom_step = 0.9;
+static const double turn_step = 5 * WEFT_PI / 180;
+
+#define EXPOSURE_STEP 1.189207115 /* a quarter of a stop */
+#define ZOOM_STEP 0.9
 
 /* ---- What is shown ---- */
 
@@ -22,8 +24,9 @@ static void say_missing(weft_interaction *i, weft_mode mode)
         snprintf(i->said, sizeof i->said, "%s", missing[mode]);
 }
 
-static void show(weft_interaction *i, weft_mode mode)
+static void show(weft_interaction *i, double value)
 {
+    weft_mode mode = (weft_mode)value;
     if (!i->available[mode]) {
         say_missing(i, mode);
         return;
@@ -32,23 +35,9 @@ static void show(weft_interaction *i, weft_mode mode)
     snprintf(i->said, sizeof i->said, "%s", weft_mode_name(mode));
 }
 
-static void show_raw(weft_interaction *i)
+static void flip(weft_interaction *i, double value)
 {
-    show(i, WEFT_MODE_RAW);
-}
-
-static void show_compressed(weft_interaction *i)
-{
-    show(i, WEFT_MODE_COMPRESSED);
-}
-
-static void show_analytic(weft_interaction *i)
-{
-    show(i, WEFT_MODE_ANALYTIC);
-}
-
-static void flip(weft_interaction *i)
-{
+    (void)value;
     weft_interaction_flip(i);
     const char *first = weft_mode_name(i->scene.pane[0]), *second = weft_mode_name(i->scene.pane[1]);
     if (i->scene.layout == WEFT_LAYOUT_WIPE)
@@ -59,16 +48,18 @@ static void flip(weft_interaction *i)
         snprintf(i->said, sizeof i->said, "%s", first);
 }
 
-static void peek(weft_interaction *i)
+static void peek(weft_interaction *i, double value)
 {
+    (void)value;
     if (i->available[WEFT_MODE_RAW])
         weft_interaction_peek(i);
     else
         say_missing(i, WEFT_MODE_RAW);
 }
 
-static void lay_out(weft_interaction *i, weft_layout layout)
+static void lay_out(weft_interaction *i, double value)
 {
+    weft_layout layout = (weft_layout)value;
     static const char *const said[WEFT_LAYOUT_COUNT] = {"side by side", "wipe", "difference: second minus first"};
     weft_interaction_lay_out(i, layout);
     if (weft_scene_panes(&i->scene) > 1)
@@ -77,25 +68,11 @@ static void lay_out(weft_interaction *i, weft_layout layout)
         snprintf(i->said, sizeof i->said, "nothing to compare with: drop another file of this cloth");
 }
 
-static void show_all(weft_interaction *i)
-{
-    lay_out(i, WEFT_LAYOUT_PANES);
-}
-
-static void wipe(weft_interaction *i)
-{
-    lay_out(i, WEFT_LAYOUT_WIPE);
-}
-
-static void subtract(weft_interaction *i)
-{
-    lay_out(i, WEFT_LAYOUT_DIFFERENCE);
-}
-
 /* ---- How it is shown ---- */
 
-static void next_level_choice(weft_interaction *i)
+static void next_level_choice(weft_interaction *i, double value)
 {
+    (void)value;
     static const char *const name[] = {"trilinear", "nearest", "none"};
     weft_scene *scene = &i->scene;
     scene->level_choice = scene->level_choice < WEFT_LEVEL_NONE ? scene->level_choice + 1 : WEFT_LEVEL_TRILINEAR;
@@ -110,34 +87,39 @@ static void toggle(weft_interaction *i, bool *value, const char *name)
     i->changed = true;
 }
 
-static void toggle_levels(weft_interaction *i)
+static void toggle_levels(weft_interaction *i, double value)
 {
+    (void)value;
     toggle(i, &i->scene.show_level, "level in false colour");
 }
 
-static void toggle_extrapolation(weft_interaction *i)
+static void toggle_extrapolation(weft_interaction *i, double value)
 {
+    (void)value;
     toggle(i, &i->scene.show_extrapolation, "tint where nothing was measured");
 }
 
-static void toggle_shadows(weft_interaction *i)
+static void toggle_shadows(weft_interaction *i, double value)
 {
+    (void)value;
     if (i->scene.light_count > 0)
         toggle(i, &i->scene.shadows, "shadows");
     else
         snprintf(i->said, sizeof i->said, "no shadows without a key light");
 }
 
-static void toggle_relief(weft_interaction *i)
+static void toggle_relief(weft_interaction *i, double value)
 {
+    (void)value;
     if (i->has_relief)
         toggle(i, &i->scene.relief, "through the heights");
     else
         snprintf(i->said, sizeof i->said, "no heights: weft relief finds those of a dataset, weft compress keeps them");
 }
 
-static void toggle_environment(weft_interaction *i)
+static void toggle_environment(weft_interaction *i, double value)
 {
+    (void)value;
     if (!i->has_environment) {
         snprintf(i->said, sizeof i->said, "no environment: drop an .exr or .hdr, or give --environment");
         return;
@@ -153,36 +135,16 @@ static void expose(weft_interaction *i, double factor)
     i->changed = true;
 }
 
-static void darken(weft_interaction *i)
-{
-    expose(i, 1 / exposure_step);
-}
-
-static void brighten(weft_interaction *i)
-{
-    expose(i, exposure_step);
-}
-
 /* ---- Camera, light and mesh ---- */
 
-static void turn_left(weft_interaction *i)
+static void turn_across(weft_interaction *i, double steps)
 {
-    weft_interaction_turn(i, -turn_step, 0);
+    weft_interaction_turn(i, steps * turn_step, 0);
 }
 
-static void turn_right(weft_interaction *i)
+static void turn_down(weft_interaction *i, double steps)
 {
-    weft_interaction_turn(i, turn_step, 0);
-}
-
-static void turn_up(weft_interaction *i)
-{
-    weft_interaction_turn(i, 0, -turn_step);
-}
-
-static void turn_down(weft_interaction *i)
-{
-    weft_interaction_turn(i, 0, turn_step);
+    weft_interaction_turn(i, 0, steps * turn_step);
 }
 
 static void zoom(weft_interaction *i, double factor)
@@ -191,45 +153,40 @@ static void zoom(weft_interaction *i, double factor)
     i->changed = true;
 }
 
-static void come_closer(weft_interaction *i)
+static void hold_light(weft_interaction *i, double value)
 {
-    zoom(i, zoom_step);
-}
-
-static void go_farther(weft_interaction *i)
-{
-    zoom(i, 1 / zoom_step);
-}
-
-static void hold_light(weft_interaction *i)
-{
+    (void)value;
     i->drag_moves_light = !i->drag_moves_light;
     snprintf(i->said, sizeof i->said, "%s", i->drag_moves_light ? "the light moves" : "the cloth turns");
 }
 
-static void turn_by_itself(weft_interaction *i)
+static void turn_by_itself(weft_interaction *i, double value)
 {
+    (void)value;
     i->turns = !i->turns;
     snprintf(i->said, sizeof i->said, "turn by itself: %s", i->turns ? "on" : "off");
 }
 
-static void see_all(weft_interaction *i)
+static void see_all(weft_interaction *i, double value)
 {
+    (void)value;
     weft_orbit *orbit = &i->scene.orbit;
     *orbit = (weft_orbit){orbit->azimuth_rad, orbit->elevation_rad, weft_orbit_whole(), 0, 0};
     snprintf(i->said, sizeof i->said, "all of it");
     i->changed = true;
 }
 
-static void look_from_start(weft_interaction *i)
+static void look_from_start(weft_interaction *i, double value)
 {
+    (void)value;
     i->scene.orbit = i->start.orbit;
     snprintf(i->said, sizeof i->said, "camera as at the start");
     i->changed = true;
 }
 
-static void light_from_start(weft_interaction *i)
+static void light_from_start(weft_interaction *i, double value)
 {
+    (void)value;
     weft_scene *scene = &i->scene;
     for (int l = 0; l < WEFT_SCENE_MAX_LIGHTS; l++)
         scene->light[l] = i->start.light[l];
@@ -242,80 +199,45 @@ static void light_from_start(weft_interaction *i)
     i->changed = true;
 }
 
-static void want_mesh(weft_interaction *i, const char *mesh, const char *said)
+static void choose_mesh(weft_interaction *i, double value)
 {
-    i->wants_mesh = mesh;
-    snprintf(i->said, sizeof i->said, "%s", said);
+    static const char *const mesh[] = {"drape", "sphere", "plane"}, *const said[] = {"drape", "ball", "plane"};
+    i->wants_mesh = mesh[(int)value];
+    snprintf(i->said, sizeof i->said, "%s", said[(int)value]);
 }
 
-static void want_drape(weft_interaction *i)
+/* ---- Files and window: switches of the interaction, which `offset` names ---- */
+
+static bool *switch_at(weft_interaction *i, double offset)
 {
-    want_mesh(i, "drape", "drape");
+    return (bool *)((char *)i + (size_t)offset);
 }
 
-static void want_sphere(weft_interaction *i)
+static void want(weft_interaction *i, double offset)
 {
-    want_mesh(i, "sphere", "ball");
+    *switch_at(i, offset) = true;
 }
 
-static void want_plane(weft_interaction *i)
+static void switch_over(weft_interaction *i, double offset)
 {
-    want_mesh(i, "plane", "plane");
+    bool *on = switch_at(i, offset);
+    *on = !*on;
 }
 
-/* ---- Files and window ---- */
-
-static void want_screenshot(weft_interaction *i)
+static void leave(weft_interaction *i, double value)
 {
-    i->wants_screenshot = true;
-}
-
-static void want_reload(weft_interaction *i)
-{
-    i->wants_reload = true;
-}
-
-static void want_undo(weft_interaction *i)
-{
-    i->wants_undo = true;
-}
-
-static void want_redo(weft_interaction *i)
-{
-    i->wants_redo = true;
-}
-
-static void toggle_full_screen(weft_interaction *i)
-{
-    i->full_screen = !i->full_screen;
-}
-
-static void toggle_panel(weft_interaction *i)
-{
-    i->shows_panel = !i->shows_panel;
-}
-
-static void toggle_help(weft_interaction *i)
-{
-    i->shows_help = !i->shows_help;
-}
-
-static void want_quit(weft_interaction *i)
-{
-    i->wants_quit = true;
-}
-
-static void leave(weft_interaction *i)
-{
+    (void)value;
     if (i->shows_help)
         i->shows_help = false;
     else if (i->full_screen)
         i->full_screen = false;
     else
-        want_quit(i);
+        i->wants_quit = true;
 }
 
 /* ---- The table ---- */
+
+#define AT(member) offsetof(weft_interaction, member)
 
 static const weft_key keys[] = {
     {.name = "Mouse"},
@@ -326,52 +248,53 @@ static const weft_key keys[] = {
     {.name = "drop a file", .meaning = "show it in place of the one of its kind"},
     {.name = "SpaceMouse", .meaning = "turn, shift, closer, farther"},
     {.name = "What is shown"},
-    {"1", "raw samples", GLFW_KEY_1, .press = show_raw},
-    {"2", "compressed", GLFW_KEY_2, .press = show_compressed},
-    {"3", "analytic", GLFW_KEY_3, .press = show_analytic},
+    {"1", "raw samples", GLFW_KEY_1, .press = show, .value = WEFT_MODE_RAW},
+    {"2", "compressed", GLFW_KEY_2, .press = show, .value = WEFT_MODE_COMPRESSED},
+    {"3", "analytic", GLFW_KEY_3, .press = show, .value = WEFT_MODE_ANALYTIC},
     {"Space", "back to the one before", GLFW_KEY_SPACE, .press = flip},
     {"B, held", "raw, until it is released", GLFW_KEY_B, .press = peek, .release = weft_interaction_end_peek},
-    {"S", "side by side", GLFW_KEY_S, .press = show_all},
-    {"W", "wipe: drag the line", GLFW_KEY_W, .press = wipe},
-    {"X", "difference: second minus first", GLFW_KEY_X, .press = subtract},
+    {"S", "side by side", GLFW_KEY_S, .press = lay_out, .value = WEFT_LAYOUT_PANES},
+    {"W", "wipe: drag the line", GLFW_KEY_W, .press = lay_out, .value = WEFT_LAYOUT_WIPE},
+    {"X", "difference: second minus first", GLFW_KEY_X, .press = lay_out, .value = WEFT_LAYOUT_DIFFERENCE},
     {"N", "mip level in false colour", GLFW_KEY_N, .press = toggle_levels},
     {"T", "tint where nothing was measured", GLFW_KEY_T, .press = toggle_extrapolation},
     {"M", "mip levels: trilinear, nearest, none", GLFW_KEY_M, .press = next_level_choice},
     {"Z", "raw and components through heights", GLFW_KEY_Z, .press = toggle_relief},
     {.name = "Camera and light"},
-    {"arrows", "turn", GLFW_KEY_LEFT, .repeats = true, .press = turn_left},
-    {NULL, NULL, GLFW_KEY_RIGHT, .repeats = true, .press = turn_right},
-    {NULL, NULL, GLFW_KEY_UP, .repeats = true, .press = turn_up},
-    {NULL, NULL, GLFW_KEY_DOWN, .repeats = true, .press = turn_down},
-    {"+ -", "closer, farther", GLFW_KEY_EQUAL, .repeats = true, .press = come_closer},
-    {NULL, NULL, GLFW_KEY_KP_ADD, .repeats = true, .press = come_closer},
-    {NULL, NULL, GLFW_KEY_MINUS, .repeats = true, .press = go_farther},
-    {NULL, NULL, GLFW_KEY_KP_SUBTRACT, .repeats = true, .press = go_farther},
+    {"arrows", "turn", GLFW_KEY_LEFT, .repeats = true, .press = turn_across, .value = -1},
+    {NULL, NULL, GLFW_KEY_RIGHT, .repeats = true, .press = turn_across, .value = 1},
+    {NULL, NULL, GLFW_KEY_UP, .repeats = true, .press = turn_down, .value = -1},
+    {NULL, NULL, GLFW_KEY_DOWN, .repeats = true, .press = turn_down, .value = 1},
+    {"+ -", "closer, farther", GLFW_KEY_EQUAL, .repeats = true, .press = zoom, .value = ZOOM_STEP},
+    {NULL, NULL, GLFW_KEY_KP_ADD, .repeats = true, .press = zoom, .value = ZOOM_STEP},
+    {NULL, NULL, GLFW_KEY_MINUS, .repeats = true, .press = zoom, .value = 1 / ZOOM_STEP},
+    {NULL, NULL, GLFW_KEY_KP_SUBTRACT, .repeats = true, .press = zoom, .value = 1 / ZOOM_STEP},
     {"L", "plain drags and arrows move the light", GLFW_KEY_L, .press = hold_light},
     {"A", "turn by itself", GLFW_KEY_A, .press = turn_by_itself},
     {"F", "all of it in the picture", GLFW_KEY_F, .press = see_all},
     {"Home", "camera as at the start", GLFW_KEY_HOME, .press = look_from_start},
     {"0", "lights and exposure as at the start", GLFW_KEY_0, .press = light_from_start},
-    {"[", "darker", GLFW_KEY_LEFT_BRACKET, .repeats = true, .press = darken},
-    {"]", "brighter", GLFW_KEY_RIGHT_BRACKET, .repeats = true, .press = brighten},
+    {"[", "darker", GLFW_KEY_LEFT_BRACKET, .repeats = true, .press = expose, .value = 1 / EXPOSURE_STEP},
+    {"]", "brighter", GLFW_KEY_RIGHT_BRACKET, .repeats = true, .press = expose, .value = EXPOSURE_STEP},
     {"C", "shadows", GLFW_KEY_C, .press = toggle_shadows},
     {"E", "environment", GLFW_KEY_E, .press = toggle_environment},
-    {"D", "drape", GLFW_KEY_D, .press = want_drape},
-    {"O", "ball", GLFW_KEY_O, .press = want_sphere},
-    {"P", "plane", GLFW_KEY_P, .press = want_plane},
+    {"D", "drape", GLFW_KEY_D, .press = choose_mesh, .value = 0},
+    {"O", "ball", GLFW_KEY_O, .press = choose_mesh, .value = 1},
+    {"P", "plane", GLFW_KEY_P, .press = choose_mesh, .value = 2},
     {.name = "Window"},
-    {"F12, Ctrl + S", "save the picture", GLFW_KEY_F12, .press = want_screenshot},
-    {NULL, NULL, GLFW_KEY_S, .with_control = true, .press = want_screenshot},
-    {"Ctrl + Z", "undo: light, weave, what is shown", GLFW_KEY_Z, .with_control = true, .press = want_undo},
-    {"Ctrl + Y", "do it again", GLFW_KEY_Y, .with_control = true, .press = want_redo},
-    {"R", "read the files again", GLFW_KEY_R, .press = want_reload},
-    {"F11", "full screen", GLFW_KEY_F11, .press = toggle_full_screen},
-    {"Tab", "panel", GLFW_KEY_TAB, .press = toggle_panel},
-    {"H, F1", "this list", GLFW_KEY_H, .press = toggle_help},
-    {NULL, NULL, GLFW_KEY_F1, .press = toggle_help},
+    {"F12, Ctrl + S", "save the picture", GLFW_KEY_F12, .press = want, .value = AT(wants_screenshot)},
+    {NULL, NULL, GLFW_KEY_S, .with_control = true, .press = want, .value = AT(wants_screenshot)},
+    {"Ctrl + Z", "undo: light, weave, what is shown", GLFW_KEY_Z, .with_control = true, .press = want,
+     .value = AT(wants_undo)},
+    {"Ctrl + Y", "do it again", GLFW_KEY_Y, .with_control = true, .press = want, .value = AT(wants_redo)},
+    {"R", "read the files again", GLFW_KEY_R, .press = want, .value = AT(wants_reload)},
+    {"F11", "full screen", GLFW_KEY_F11, .press = switch_over, .value = AT(full_screen)},
+    {"Tab", "panel", GLFW_KEY_TAB, .press = switch_over, .value = AT(shows_panel)},
+    {"H, F1", "this list", GLFW_KEY_H, .press = switch_over, .value = AT(shows_help)},
+    {NULL, NULL, GLFW_KEY_F1, .press = switch_over, .value = AT(shows_help)},
     {"Esc", "close this list, leave full screen, quit", GLFW_KEY_ESCAPE, .press = leave},
-    {"Q, Ctrl + Q", "quit", GLFW_KEY_Q, .press = want_quit},
-    {NULL, NULL, GLFW_KEY_Q, .with_control = true, .press = want_quit},
+    {"Q, Ctrl + Q", "quit", GLFW_KEY_Q, .press = want, .value = AT(wants_quit)},
+    {NULL, NULL, GLFW_KEY_Q, .with_control = true, .press = want, .value = AT(wants_quit)},
 };
 
 const weft_key *weft_keys(size_t *count)
@@ -387,7 +310,7 @@ void weft_keys_press(weft_interaction *i, int code, int modifiers, bool again)
         return;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
         if (keys[k].code == code && keys[k].press && keys[k].with_control == control && (!again || keys[k].repeats))
-            keys[k].press(i);
+            keys[k].press(i, keys[k].value);
     }
 }
 

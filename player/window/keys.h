@@ -10,11 +10,12 @@
 /* A line of the table. Without a meaning its name is a heading; without a name it is another key of the line above. */
 typedef struct weft_key {
     const char *name, *meaning;
-    int code;          /* GLFW's; 0: no key */
-    bool with_control; /* only while Ctrl is held; other keys only while it is not */
-    bool repeats;      /* while it is held */
-    void (*press)(weft_interaction *);
-    void (*release)(weft_interaction *); /* or NULL */
+    int code;                                        /* GLFW's; 0: no key */
+    bool with_control;                               /* only while Ctrl is held; other keys only while it is not */
+    bool repeats;                                    /* while it is held */
+    void (*press)(weft_interaction *, double value); /* or NULL */
+    double value;                                    /* that `press` gets: which mode, how far, where a switch lies */
+    void (*release)(weft_interaction *);             /* or NULL */
 } weft_key;
 
 /* The table, of *count lines in the order they are read; static storage. */

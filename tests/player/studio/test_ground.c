@@ -2,8 +2,8 @@
 #include "base/numeric/statistics.h"
 #include "player/draw/canvas.h"
 #include "player/draw/ground_shadow.h"
+#include "player/draw/interactive.h"
 #include "player/draw/lighting.h"
-#include "player/draw/resting.h"
 #include "player/scene/surroundings.h"
 #include "studio.h"
 

@@ -1,4 +1,4 @@
-#include "player/draw/moving.h"
+#include "player/draw/interactive.h"
 
 #include <math.h>
 
@@ -26,4 +26,30 @@ weft_code weft_player_draw_moving(weft_player *p, const weft_scene *scene, const
     WEFT_TRY(weft_player_draw(p, &wordless, canvas->drawn_width, canvas->drawn_height, sampling, error));
     weft_canvas_end_frame(canvas);
     return weft_player_draw_labels(p, scene, canvas->width, canvas->height, error);
+}
+
+/* ---- Converging frames ---- */
+
+/* Any four frames in a row lie well apart along a pixel. */
+static const double longest_pixel = 4;
+
+static double radical_inverse(int index, int base)
+{
+    double result = 0, digit = 1;
+    for (; index > 0; index /= base) {
+        digit /= base;
+        result += digit * (index % base);
+    }
+    return result;
+}
+
+weft_sampling weft_sampling_at_rest(int frame)
+{
+    return (weft_sampling){
+        .shift_x = frame > 0 ? radical_inverse(frame, 2) - 0.5 : 0,
+        .shift_y = frame > 0 ? radical_inverse(frame, 3) - 0.5 : 0,
+        .longest_pixel = longest_pixel,
+        .frame = frame,
+        .neighbours_differ = true,
+    };
 }
