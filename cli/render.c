@@ -2,8 +2,13 @@
 #include "compare/pictures/scene_error.h"
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
+#include "player/settings/key_frames.h"
 #include "player/settings/scene_loader.h"
-#include "player/settings/sequence.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { DEFAULT_FPS = 25 };
 
@@ -26,6 +31,50 @@ static const weft_option option_table[] = {
      .offset = offsetof(render_command, frames_per_second), .low = 1e-3, .high = 1e4},
     {0},
 };
+
+/* ---- Names of the frames of a path ---- */
+
+/* "%d" or "%04d" in a name. */
+typedef struct place {
+    size_t start, end; /* in the name */
+    int width;         /* 0 for "%d" */
+} place;
+
+static bool find_place(const char *pattern, place *found)
+{
+    const char *percent = strchr(pattern, '%');
+    *found = (place){0};
+    if (!percent || strchr(percent + 1, '%'))
+        return false;
+    const char *at = percent + 1;
+    if (*at == '0' && isdigit((unsigned char)at[1]) && at[2] == 'd') {
+        found->width = at[1] - '0';
+        at += 2;
+    }
+    found->start = (size_t)(percent - pattern);
+    found->end = (size_t)(at - pattern) + 1;
+    return *at == 'd';
+}
+
+/* Whether the name holds exactly one place for a number, %d or %04d, and no other '%'. */
+static bool is_pattern(const char *pattern)
+{
+    place found;
+    return find_place(pattern, &found);
+}
+
+/* The caller frees; NULL where memory is short. */
+static char *frame_name(const char *pattern, int number)
+{
+    place p;
+    char *name;
+    if (!find_place(pattern, &p))
+        return strdup(pattern);
+    int length = asprintf(&name, "%.*s%0*d%s", (int)p.start, pattern, p.width, number, pattern + p.end);
+    return length < 0 ? NULL : name;
+}
+
+/* ---- Options ---- */
 
 /* Refuses options that would do nothing for want of another. In a window what they want may come later. */
 static weft_code refuse_idle(const render_command *command, weft_error *error)
@@ -64,7 +113,7 @@ static weft_code check(void *values, weft_error *error)
     if (!weft_settings_is_picture(command->output))
         return weft_fail(error, WEFT_BAD_USAGE, "'%s' names no kind of picture: -o takes .png, .exr or .tif",
                          command->output);
-    if (command->path_file && !weft_sequence_is_pattern(command->output))
+    if (command->path_file && !is_pattern(command->output))
         return weft_fail(error, WEFT_BAD_USAGE,
                          "--path needs one place for a number in -o, as in frame-%%04d.png, not '%s'", command->output);
     return WEFT_OK;
@@ -116,6 +165,29 @@ static weft_code draw_picture(render_command *command, weft_player *player, weft
     return WEFT_OK;
 }
 
+/* What was drawn before an error stays. */
+static weft_code draw_sequence(const render_command *command, weft_player *player, const weft_progress *progress,
+                               weft_error *error)
+{
+    double frames_per_second = command->frames_per_second > 0 ? command->frames_per_second : DEFAULT_FPS;
+    const weft_path *path = &command->path;
+    weft_settings at_frame = command->settings;
+    int count;
+    WEFT_TRY(weft_path_count_frames(path, frames_per_second, &count, error));
+    for (int i = 0; i < count; i++) {
+        weft_progress_report(progress, "drawing frames", i, count);
+        weft_path_apply(path, path->time_s[0] + i / frames_per_second, &at_frame.scene);
+        char *name = frame_name(command->output, i);
+        if (!name)
+            return weft_fail_memory(error, command->output, strlen(command->output));
+        weft_code code = weft_settings_draw(name, player, &at_frame, NULL, error);
+        free(name);
+        WEFT_TRY(code);
+    }
+    weft_progress_report(progress, "drawing frames", count, count);
+    return WEFT_OK;
+}
+
 static weft_code draw(render_command *command, weft_player *player, weft_error *error)
 {
     const weft_progress progress = weft_command_progress(&command->common);
@@ -125,10 +197,7 @@ static weft_code draw(render_command *command, weft_player *player, weft_error *
         WEFT_TRY(weft_path_read(command->path_file, &command->path, error));
     WEFT_TRY(weft_scene_load(settings, player, &progress, &log, error));
     WEFT_TRY(look(command, player, &settings->scene, error));
-    if (!command->path_file)
-        return draw_picture(command, player, error);
-    double frames_per_second = command->frames_per_second > 0 ? command->frames_per_second : DEFAULT_FPS;
-    return weft_sequence_draw(command->output, &command->path, frames_per_second, settings, player, &progress, error);
+    return command->path_file ? draw_sequence(command, player, &progress, error) : draw_picture(command, player, error);
 }
 
 static weft_code render(render_command *command, weft_error *error)

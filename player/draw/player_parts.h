@@ -2,7 +2,6 @@
 #ifndef WEFT_PLAYER_DRAW_PLAYER_PARTS_H
 #define WEFT_PLAYER_DRAW_PLAYER_PARTS_H
 
-#include "player/draw/ground_shadow.h"
 #include "player/draw/player.h"
 #include "player/draw/programs.h"
 #include "player/draw/shadow.h"
@@ -15,6 +14,21 @@
 #include "reflectance/lafortune/lafortune.h"
 
 enum { WEFT_LAYER_COUNT = 2 };
+
+/* Directions that make a whole sum, at full detail. */
+enum { WEFT_GROUND_DIRECTIONS = 256 };
+
+/* What the mesh hides of a distant light from the level ground that it stands on: a picture of the ground, summed over
+ * directions of the light. It does not depend on the camera, so it is kept from frame to frame. Zeroed, it has no
+ * directions. */
+typedef struct weft_ground_shadow {
+    GLuint buffer, depth, hidden; /* hidden: how many directions the mesh hides */
+    int side;                     /* of the picture, texels */
+    int count, whole;             /* directions summed, and in a whole sum */
+    double light[3];              /* what light it is of, in the user's own terms */
+    weft_vec3 middle;             /* of the ground that the sum covers, a square */
+    double half_side;
+} weft_ground_shadow;
 
 /* On the ground: the first light of the scene, and all other light. */
 enum { WEFT_GROUND_LIGHTS = 2 };
@@ -111,6 +125,8 @@ weft_code weft_player_advance_ground(weft_player *player, const weft_scene *scen
                                      weft_error *error);
 weft_code weft_player_finish_ground(weft_player *player, const weft_scene *scene, int width, int height,
                                     weft_error *error);
+
+void weft_ground_shadow_free(weft_ground_shadow *shadow);
 
 /* The program that draws the ground of a pane behind the mesh is in use then. */
 void weft_player_use_ground(const weft_player *player, const weft_scene *scene, const weft_pane *pane);

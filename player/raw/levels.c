@@ -14,6 +14,8 @@ typedef struct level {
 struct weft_raw_levels {
     const weft_raw_plan *plan;
     int part, channels, level_count;
+    weft_raw_take *take;
+    void *context;
     level level[WEFT_MIP_LEVELS];
 };
 
@@ -34,8 +36,8 @@ static weft_code allocate_level(level *l, size_t size, weft_error *error)
     return complete ? WEFT_OK : weft_fail_memory(error, "rows of samples", (BLOCK + 1) * size * sizeof *l->first);
 }
 
-weft_code weft_raw_levels_create(const weft_raw_plan *plan, int part, int width, int height, weft_raw_levels **result,
-                                 weft_error *error)
+weft_code weft_raw_levels_create(const weft_raw_plan *plan, int part, int width, int height, weft_raw_take *take,
+                                 void *context, weft_raw_levels **result, weft_error *error)
 {
     weft_raw_levels *levels = calloc(1, sizeof *levels);
     *result = levels;
@@ -43,6 +45,8 @@ weft_code weft_raw_levels_create(const weft_raw_plan *plan, int part, int width,
         return weft_fail_memory(error, "levels", sizeof *levels);
     levels->plan = plan;
     levels->part = part;
+    levels->take = take;
+    levels->context = context;
     levels->channels = part == WEFT_RAW_SAMPLES ? 3 : 1;
     levels->level_count = plan->skipped_levels + plan->layout.level_count;
     for (int k = 0; k < levels->level_count; k++) {
@@ -80,7 +84,7 @@ static int blocks_for(int texels)
 }
 
 static weft_code give_strip(const weft_raw_levels *levels, const weft_raw_rows *rows, weft_raw_strip strip,
-                            weft_raw_take *take, void *context, weft_error *error)
+                            weft_error *error)
 {
     const weft_raw_tiles *tiles = &levels->plan->tiles[levels->part];
     int first = strip.column * tiles->layers, count = tiles->count - first, blocks = blocks_for(rows->width);
@@ -89,12 +93,11 @@ static weft_code give_strip(const weft_raw_levels *levels, const weft_raw_rows *
     if (!strip.texels)
         return weft_fail_memory(error, "rows of samples", strip.bytes);
     weft_raw_store(tiles->format, rows, first, count < tiles->layers ? count : tiles->layers, blocks, strip.texels);
-    return take(context, &strip, error);
+    return levels->take(levels->context, &strip, error);
 }
 
 /* The row of blocks in which row y of texels lies, as far as it came; after the last row comes the first. */
-static weft_code give_blocks(const weft_raw_levels *levels, int k, int y, weft_raw_take *take, void *context,
-                             weft_error *error)
+static weft_code give_blocks(const weft_raw_levels *levels, int k, int y, weft_error *error)
 {
     const level *l = &levels->level[k];
     const weft_raw_tiles *tiles = &levels->plan->tiles[levels->part];
@@ -103,19 +106,18 @@ static weft_code give_blocks(const weft_raw_levels *levels, int k, int y, weft_r
         rows.row[i] = y / BLOCK * BLOCK + i < l->height ? l->row[i] : l->first;
     for (int column = 0; column < tiles->columns; column++) {
         weft_raw_strip strip = {levels->part, k - levels->plan->skipped_levels, column, y / BLOCK, 0, NULL};
-        WEFT_TRY(give_strip(levels, &rows, strip, take, context, error));
+        WEFT_TRY(give_strip(levels, &rows, strip, error));
     }
     return WEFT_OK;
 }
 
-static weft_code give_complete_blocks(const weft_raw_levels *levels, int k, int y, weft_raw_take *take, void *context,
-                                      weft_error *error)
+static weft_code give_complete_blocks(const weft_raw_levels *levels, int k, int y, weft_error *error)
 {
     bool last = y == levels->level[k].height - 1;
     if (y % BLOCK == BLOCK - 1 || last)
-        WEFT_TRY(give_blocks(levels, k, y, take, context, error));
+        WEFT_TRY(give_blocks(levels, k, y, error));
     if (y % BLOCK == BLOCK - 1 && last)
-        WEFT_TRY(give_blocks(levels, k, y + 1, take, context, error));
+        WEFT_TRY(give_blocks(levels, k, y + 1, error));
     return WEFT_OK;
 }
 
@@ -134,20 +136,20 @@ static void halve(const weft_raw_levels *levels, int k, const float *upper, cons
     }
 }
 
-static weft_code push_row(weft_raw_levels *levels, int k, int y, weft_raw_take *take, void *context, weft_error *error)
+static weft_code push_row(weft_raw_levels *levels, int k, int y, weft_error *error)
 {
     const level *l = &levels->level[k];
     if (y == 0)
         memcpy(l->first, l->row[0], (size_t)l->width * texel_size(levels) * sizeof(float));
     if (k >= levels->plan->skipped_levels)
-        WEFT_TRY(give_complete_blocks(levels, k, y, take, context, error));
+        WEFT_TRY(give_complete_blocks(levels, k, y, error));
     if (k + 1 >= levels->level_count || (y % 2 == 0 && y < l->height - 1))
         return WEFT_OK;
     halve(levels, k, l->row[y / 2 * 2 % BLOCK], l->row[y % BLOCK], levels->level[k + 1].row[y / 2 % BLOCK]);
-    return push_row(levels, k + 1, y / 2, take, context, error);
+    return push_row(levels, k + 1, y / 2, error);
 }
 
-weft_code weft_raw_levels_push(weft_raw_levels *levels, int y, weft_raw_take *take, void *context, weft_error *error)
+weft_code weft_raw_levels_push(weft_raw_levels *levels, int y, weft_error *error)
 {
-    return push_row(levels, 0, y, take, context, error);
+    return push_row(levels, 0, y, error);
 }

@@ -18,8 +18,8 @@ typedef struct weft_raw_levels weft_raw_levels;
 
 /* For one part of the plan; the finest level of the dataset has this size. `plan` is kept. Errors: WEFT_SYSTEM. The
  * caller frees with weft_raw_levels_free. */
-weft_code weft_raw_levels_create(const weft_raw_plan *plan, int part, int width, int height, weft_raw_levels **result,
-                                 weft_error *error);
+weft_code weft_raw_levels_create(const weft_raw_plan *plan, int part, int width, int height, weft_raw_take *take,
+                                 void *context, weft_raw_levels **result, weft_error *error);
 void weft_raw_levels_free(weft_raw_levels *levels);
 
 /* Where row y of the finest level is to be written: [width][channels][image], 3 channels of samples, 1 of opacity. */
@@ -27,6 +27,6 @@ float *weft_raw_levels_row(weft_raw_levels *levels, int y);
 
 /* Row y of the finest level is written; rows come in their order. Levels are box means of samples. Errors: those of
  * `take`, WEFT_SYSTEM. */
-weft_code weft_raw_levels_push(weft_raw_levels *levels, int y, weft_raw_take *take, void *context, weft_error *error);
+weft_code weft_raw_levels_push(weft_raw_levels *levels, int y, weft_error *error);
 
 #endif

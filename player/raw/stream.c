@@ -42,9 +42,11 @@ static weft_code block_create(const weft_dataset_layout *layout, block *b, weft_
 static weft_code stream_create(const weft_raw_plan *plan, stream *s, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(s->dataset);
-    WEFT_TRY(weft_raw_levels_create(plan, WEFT_RAW_SAMPLES, layout->width, layout->height, &s->samples, error));
+    WEFT_TRY(weft_raw_levels_create(plan, WEFT_RAW_SAMPLES, layout->width, layout->height, s->sink->strip,
+                                    s->sink->context, &s->samples, error));
     if (plan->tiles[WEFT_RAW_OPACITY].count > 0)
-        WEFT_TRY(weft_raw_levels_create(plan, WEFT_RAW_OPACITY, layout->width, layout->height, &s->opacity, error));
+        WEFT_TRY(weft_raw_levels_create(plan, WEFT_RAW_OPACITY, layout->width, layout->height, s->sink->strip,
+                                        s->sink->context, &s->opacity, error));
     return block_create(layout, &s->block, error);
 }
 
@@ -73,7 +75,7 @@ static weft_code push_samples(stream *s, int first, int y, weft_error *error)
                 row[c * (size_t)count + (size_t)i] = s->block.value[3 * i + c];
         }
     }
-    return weft_raw_levels_push(s->samples, y, s->sink->strip, s->sink->context, error);
+    return weft_raw_levels_push(s->samples, y, error);
 }
 
 /* Views that are left out of the directions have no tile either. */
@@ -93,7 +95,7 @@ static weft_code push_opacity(stream *s, int first, int y, weft_error *error)
         while (tile < views)
             row[tile++] = 1;
     }
-    return weft_raw_levels_push(s->opacity, y, s->sink->strip, s->sink->context, error);
+    return weft_raw_levels_push(s->opacity, y, error);
 }
 
 static weft_code push_block(stream *s, int first, int rows, weft_error *error)

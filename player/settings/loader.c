@@ -5,6 +5,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <time.h>
 
 static const size_t most_bytes_waiting = (size_t)64 << 20;
 
@@ -104,6 +105,23 @@ weft_code weft_load_post(weft_load *load, weft_load_piece handed, weft_error *er
     free(added);
     handed.release(handed.data);
     return weft_fail(error, WEFT_SYSTEM, "loading was cancelled");
+}
+
+bool weft_load_rest(weft_load *load, double rest_s)
+{
+    weft_loader *loader = load->loader;
+    struct timespec end;
+    int status = 0;
+    clock_gettime(CLOCK_REALTIME, &end);
+    long nanoseconds = end.tv_nsec + lrint(1e9 * rest_s);
+    end.tv_sec += nanoseconds / 1000000000;
+    end.tv_nsec = nanoseconds % 1000000000;
+    pthread_mutex_lock(&loader->mutex);
+    while (!is_given_up(load) && status == 0)
+        status = pthread_cond_timedwait(&loader->taken, &loader->mutex, &end);
+    bool goes_on = !is_given_up(load);
+    pthread_mutex_unlock(&loader->mutex);
+    return goes_on;
 }
 
 static void report(void *context, const char *stage, long done, long total)

@@ -60,6 +60,9 @@ typedef struct weft_load_piece {
  * the reader returns that; the piece is released here. */
 weft_code weft_load_post(weft_load *load, weft_load_piece piece, weft_error *error);
 
+/* Waits so long; false as soon as the load is cancelled. */
+bool weft_load_rest(weft_load *load, double rest_s);
+
 /* Tells how far the load is. */
 weft_progress weft_load_progress(weft_load *load);
 

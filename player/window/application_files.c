@@ -32,7 +32,6 @@ weft_code weft_application_open_files(weft_application *a, weft_error *error)
     weft_error no_watch;
     if (weft_watch_create(&a->watch, &no_watch) != WEFT_OK)
         weft_log_line(&a->setup.log, no_watch.message);
-    weft_recent_files_read(&a->recent);
     WEFT_TRY(weft_space_mouse_create(&a->mouse, error));
     return weft_scene_loader_create(a->setup.settings, &a->loader, error);
 }
@@ -42,7 +41,6 @@ void weft_application_close_files(weft_application *a)
     weft_scene_loader_free(a->loader);
     weft_space_mouse_free(a->mouse);
     weft_watch_free(a->watch);
-    weft_recent_files_free(&a->recent);
     weft_folder_files_free(&a->folder);
 }
 
@@ -77,30 +75,6 @@ static weft_code watch_files(weft_application *a, weft_error *error)
         WEFT_TRY(weft_watch_set(a->watch, slot, is_file ? path[slot] : NULL, error));
     }
     return WEFT_OK;
-}
-
-/* A file that is new in its slot comes to the head of the list; where it cannot be stored, that is no reason to stop.
- */
-static void remember_file(weft_application *a, int slot, const char *path)
-{
-    weft_error error;
-    if (!path || strcmp(path, a->remembered[slot]) == 0)
-        return;
-    snprintf(a->remembered[slot], sizeof a->remembered[slot], "%s", path);
-    if (weft_recent_files_add(&a->recent, path, &error) != WEFT_OK)
-        weft_log_line(&a->setup.log, error.message);
-}
-
-/* The material last: it is what most windows are for. */
-static void remember_files(weft_application *a)
-{
-    const weft_settings *s = a->setup.settings;
-    remember_file(a, WEFT_SLOT_MESH, weft_mesh_is_built_in(s->mesh) ? NULL : s->mesh);
-    remember_file(a, WEFT_SLOT_ENVIRONMENT,
-                  s->environment && weft_surroundings_are(s->environment) ? NULL : s->environment);
-    remember_file(a, WEFT_SLOT_WEAVE, s->weave);
-    remember_file(a, WEFT_SLOT_DATASET, s->dataset);
-    remember_file(a, WEFT_SLOT_MATERIAL, s->material);
 }
 
 void weft_application_open(weft_application *a, const char *path)
@@ -163,7 +137,6 @@ static weft_code show_arrived(weft_application *a, char note[WEFT_NOTE_SIZE], we
     snprintf(note, WEFT_NOTE_SIZE, "%s", said);
     if (said[0])
         weft_log_line(&a->setup.log, said);
-    remember_files(a);
     /* Even where another file failed in the same slice: the names shown before are gone. */
     weft_error ignored;
     weft_code watched = watch_files(a, code == WEFT_OK ? error : &ignored);

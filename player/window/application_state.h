@@ -11,7 +11,6 @@
 #include "player/window/folder_files.h"
 #include "player/window/history.h"
 #include "player/window/interaction.h"
-#include "player/window/recent_files.h"
 #include "player/window/repose.h"
 #include "player/window/space_mouse.h"
 #include "player/window/watch.h"
@@ -25,10 +24,8 @@ struct weft_application {
     /* What arrives while the window is open */
     weft_scene_loader *loader;
     weft_space_mouse *mouse;
-    weft_watch *watch; /* NULL where the system has none */
-    weft_recent_files recent;
-    weft_folder_files folder;                   /* that one can choose from; read when its list is looked at */
-    char remembered[WEFT_SLOT_COUNT][PATH_MAX]; /* of each slot, the file that came last */
+    weft_watch *watch;        /* NULL where the system has none */
+    weft_folder_files folder; /* that one can choose from; read when its list is looked at */
     double polled_s;
     char mouse_message[WEFT_MESSAGE_SIZE]; /* told last */
     /* The picture */

@@ -24,7 +24,7 @@ void weft_panel_show_probe(const weft_application *application);
 /* The section on the weave that is shown. */
 void weft_panel_show_weave(weft_application *application);
 
-/* The sections to open files from: the folder of the one that is shown, and those that were open before. */
+/* The section to open files from: the folder of the one that is shown. */
 void weft_panel_show_files(weft_application *application);
 
 /* Where a direction lies on a disc of the upper hemisphere whose areas are solid angles: the radius is sin(theta / 2)

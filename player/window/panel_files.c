@@ -32,20 +32,8 @@ static void folder_section(weft_application *a)
         weft_application_list(a, chosen);
 }
 
-static void recent_section(weft_application *a)
-{
-    for (int i = 0; i < a->recent.count; i++) {
-        const char *path = a->recent.path[i];
-        if (weft_ui_entry_chosen(strrchr(path, '/') + 1, path))
-            a->interaction.wants_file = path;
-    }
-    weft_ui_dim_text("Or drop a file on the window.");
-}
-
 void weft_panel_show_files(weft_application *a)
 {
     if (weft_ui_section("Files of the folder", false))
         folder_section(a);
-    if (weft_ui_section("Recent files", false))
-        recent_section(a);
 }

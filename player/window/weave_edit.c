@@ -1,8 +1,14 @@
 #include "player/window/weave_edit.h"
 
+#include "reflectance/weave/batch.h"
+
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <unistd.h>
+
+/* So long after the last change the exact scale is computed: while a slider moves nobody waits for it. */
+static const double rest_s = 0.15;
 
 const weft_weave_parameter_range weft_weave_ranges[WEFT_WEAVE_RANGES] = {
     {"Twist", offsetof(weft_yarn, segment.psi), -0.5 * WEFT_PI, 0.5 * WEFT_PI, true, false},
@@ -16,9 +22,128 @@ const weft_weave_parameter_range weft_weave_ranges[WEFT_WEAVE_RANGES] = {
     {"Length", offsetof(weft_yarn, segment.length), 0.1, 16, false, true},
 };
 
+/* ---- What follows from a change ---- */
+
+struct weft_derived {
+    weft_loader *loader;
+    double correction; /* of estimated scales; the background's alone once a change is derived */
+    bool is_awaited;   /* the estimate of the last change has not come yet */
+    bool is_new, is_exact;
+    weft_weave_texels texels; /* where new */
+};
+
+/* One change being derived. */
+typedef struct derivation {
+    struct weft_derived *derived;
+    weft_weave weave;
+    weft_weave_texels texels;
+} derivation;
+
+/* In the drawing thread. */
+static weft_code hand_over(void *data, weft_error *error)
+{
+    (void)error;
+    derivation *d = data;
+    struct weft_derived *derived = d->derived;
+    weft_weave_texels_free(&derived->texels);
+    derived->texels = d->texels;
+    d->texels = (weft_weave_texels){0};
+    derived->is_exact = !derived->is_awaited;
+    derived->is_awaited = false;
+    derived->is_new = true;
+    return WEFT_OK;
+}
+
+static void free_derivation(void *data)
+{
+    derivation *d = data;
+    weft_weave_texels_free(&d->texels);
+    weft_weave_free(&d->weave);
+    free(d);
+}
+
+/* The texels of the weave with its estimated scale go ahead. */
+static weft_code post_estimate(derivation *d, weft_load *load, weft_error *error)
+{
+    derivation *ahead = calloc(1, sizeof *ahead);
+    if (!ahead)
+        return weft_fail_memory(error, "weave", sizeof *ahead);
+    ahead->derived = d->derived;
+    weft_code code = weft_weave_texels_of(&d->weave, &ahead->texels, error);
+    if (code == WEFT_OK)
+        return weft_load_post(load, (weft_load_piece){hand_over, free_derivation, ahead, 0}, error);
+    free_derivation(ahead);
+    return code;
+}
+
+static weft_code derive(void *data, weft_load *load, weft_error *error)
+{
+    derivation *d = data;
+    weft_weave *weave = &d->weave;
+    weft_real estimate = 0;
+    weft_weave_update_yarns(weave);
+    WEFT_TRY(weft_weave_specular_scale_batch(weave, &estimate, error));
+    weave->specular_scale = estimate * (weft_real)d->derived->correction;
+    WEFT_TRY(post_estimate(d, load, error));
+    if (!weft_load_rest(load, rest_s))
+        return WEFT_OK;
+    weave->specular_scale = weft_weave_specular_scale(weave);
+    if (estimate > 0)
+        d->derived->correction = (double)(weave->specular_scale / estimate);
+    return weft_weave_texels_of(weave, &d->texels, error);
+}
+
+static void free_derived(struct weft_derived *derived)
+{
+    if (!derived)
+        return;
+    weft_loader_free(derived->loader);
+    weft_weave_texels_free(&derived->texels);
+    free(derived);
+}
+
+static weft_code create_derived(const weft_weave *start, struct weft_derived **result, weft_error *error)
+{
+    weft_real estimate;
+    WEFT_TRY(weft_weave_specular_scale_batch(start, &estimate, error));
+    struct weft_derived *derived = calloc(1, sizeof *derived);
+    if (!derived)
+        return weft_fail_memory(error, "weave", sizeof *derived);
+    derived->correction = estimate > 0 ? (double)(start->specular_scale / estimate) : 1;
+    weft_code code = weft_loader_create(&derived->loader, error);
+    if (code == WEFT_OK)
+        *result = derived;
+    else
+        free(derived);
+    return code;
+}
+
+/* A change waits until the estimate of the one before has come: while a slider moves, all would be given up else. */
+static weft_code start_deriving(weft_weave_edit *edit, weft_error *error)
+{
+    static const weft_load_steps steps = {derive, hand_over, free_derivation};
+    struct weft_derived *derived = edit->derived;
+    if (!edit->is_stale || derived->is_awaited)
+        return WEFT_OK;
+    derivation *d = calloc(1, sizeof *d);
+    if (!d)
+        return weft_fail_memory(error, "weave", sizeof *d);
+    d->derived = derived;
+    weft_code code = weft_weave_copy(&edit->weave, &d->weave, error);
+    if (code != WEFT_OK) {
+        free_derivation(d);
+        return code;
+    }
+    edit->is_stale = false;
+    derived->is_awaited = true;
+    return weft_loader_start(derived->loader, 0, &steps, d, error);
+}
+
+/* ---- The weave ---- */
+
 void weft_weave_edit_free(weft_weave_edit *edit)
 {
-    weft_weave_worker_free(edit->worker);
+    free_derived(edit->derived);
     weft_weave_free(&edit->weave);
     *edit = (weft_weave_edit){0};
 }
@@ -36,7 +161,7 @@ weft_code weft_weave_edit_follow(weft_weave_edit *edit, const weft_player *playe
     if (!path)
         return WEFT_OK;
     WEFT_TRY(weft_weave_read(path, NULL, 0, &edit->weave, NULL, error));
-    weft_code code = weft_weave_worker_create(&edit->weave, &edit->worker, error);
+    weft_code code = create_derived(&edit->weave, &edit->derived, error);
     if (code != WEFT_OK)
         weft_weave_free(&edit->weave);
     return code;
@@ -89,27 +214,30 @@ void weft_weave_edit_set_noise(weft_weave_edit *edit, double fineness, double pe
 
 weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error)
 {
-    WEFT_TRY(weft_weave_worker_ask(edit->worker, &edit->weave, error));
-    edit->is_pending = true;
-    return WEFT_OK;
+    edit->is_stale = edit->is_pending = true;
+    return start_deriving(edit, error);
 }
 
 weft_code weft_weave_edit_poll(weft_weave_edit *edit, weft_player *player, bool *shown, weft_error *error)
 {
-    bool exact = false;
-    weft_weave_texels texels;
+    struct weft_derived *derived = edit->derived;
+    bool finished;
     *shown = false;
     if (!edit->is_pending || edit->revision != weft_player_weave_revision(player))
         return WEFT_OK;
-    WEFT_TRY(weft_weave_worker_take(edit->worker, &texels, shown, &exact, error));
-    if (!*shown)
+    weft_code code = weft_loader_poll(derived->loader, 0, &finished, error);
+    derived->is_awaited &= code == WEFT_OK;
+    WEFT_TRY(code);
+    WEFT_TRY(start_deriving(edit, error));
+    if (!derived->is_new)
         return WEFT_OK;
     weft_weave_layout layout = weft_player_weave_layout(player);
-    weft_code code = weft_player_set_weave_texels(player, &texels, &layout, error);
-    weft_weave_texels_free(&texels);
+    derived->is_new = false;
+    WEFT_TRY(weft_player_set_weave_texels(player, &derived->texels, &layout, error));
+    *shown = true;
     edit->revision = weft_player_weave_revision(player);
-    edit->is_pending = !exact;
-    return code;
+    edit->is_pending = !derived->is_exact || derived->is_awaited;
+    return WEFT_OK;
 }
 
 weft_code weft_weave_edit_save(weft_weave_edit *edit, char path[32], weft_error *error)

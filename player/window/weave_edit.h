@@ -3,18 +3,19 @@
 #define WEFT_PLAYER_WINDOW_WEAVE_EDIT_H
 
 #include "player/draw/player.h"
-#include "player/window/weave_worker.h"
+#include "player/settings/loader.h"
 
 typedef struct weft_weave_edit {
-    weft_weave weave;          /* no yarns: there is none to edit */
-    int yarn;                  /* index of the one that is edited */
-    bool alike;                /* with it all that had the same segment */
-    int reads;                 /* how many files have been read: which of them `weave` is of */
-    bool is_changed;           /* not as its file has it */
-    bool is_unsaved;           /* no file has it */
-    long revision;             /* weft_player_weave_revision of the weave */
-    bool is_pending;           /* what follows from the last change is not shown yet, or not to its last digits */
-    weft_weave_worker *worker; /* of the weave; NULL: none */
+    weft_weave weave;             /* no yarns: there is none to edit */
+    int yarn;                     /* index of the one that is edited */
+    bool alike;                   /* with it all that had the same segment */
+    int reads;                    /* how many files have been read: which of them `weave` is of */
+    bool is_changed;              /* not as its file has it */
+    bool is_unsaved;              /* no file has it */
+    long revision;                /* weft_player_weave_revision of the weave */
+    bool is_pending;              /* what follows from the last change is not shown yet, or not to its last digits */
+    bool is_stale;                /* nobody derives yet what follows from the last change */
+    struct weft_derived *derived; /* what follows from changes; NULL: no weave */
 } weft_weave_edit;
 
 /* A parameter of a segment: where it lies in a weft_yarn, and what the slider spans; angles are shown in degrees. */
@@ -45,7 +46,9 @@ void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks
 /* Changes the noise of the weave: `fineness`, `period` and the amplitudes as in weft_weave. */
 void weft_weave_edit_set_noise(weft_weave_edit *edit, double fineness, double period, const double amplitude_deg[4]);
 
-/* Asks for what follows from the segments, which is derived in the background. Errors: WEFT_SYSTEM. */
+/* Asks for what follows from the segments, which is derived in the background: first with an estimated specular scale
+ * (weft_weave_specular_scale_batch, as its ratio to the one before), and once nothing has been asked for a while, with
+ * the exact one. Errors: WEFT_SYSTEM. */
 weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error);
 
 /* Shows what has been derived, if anything has, laid on the material as before; *shown: the picture is out

@@ -1,8 +1,5 @@
 # What the tests of the window share. Sourced; $weft is the program.
 
-# The list of recent files is not that of whoever runs the tests.
-export XDG_STATE_HOME="$PWD/state"
-
 need() { # TOOL...
     for tool; do
         if ! command -v "$tool" >/dev/null; then

@@ -55,12 +55,12 @@ static void push_all(const weft_raw_plan *plan, int width, int height, picture *
     weft_raw_levels *levels;
     weft_error error;
     p->plan = plan;
-    assert_int_equal(weft_raw_levels_create(plan, WEFT_RAW_SAMPLES, width, height, &levels, &error), WEFT_OK);
+    assert_int_equal(weft_raw_levels_create(plan, WEFT_RAW_SAMPLES, width, height, take, p, &levels, &error), WEFT_OK);
     for (int y = 0; y < height; y++) {
         float *row = weft_raw_levels_row(levels, y);
         for (int i = 0; i < width * 3 * IMAGES; i++)
             row[i] = value_of(i / (3 * IMAGES), y, i / IMAGES % 3, i % IMAGES);
-        assert_int_equal(weft_raw_levels_push(levels, y, take, p, &error), WEFT_OK);
+        assert_int_equal(weft_raw_levels_push(levels, y, &error), WEFT_OK);
     }
     weft_raw_levels_free(levels);
 }
