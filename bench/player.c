@@ -41,13 +41,13 @@ static void draw(weft_player *player, const weft_scene *scene, const weft_pace *
                  GLuint screen)
 {
     weft_error error = {0};
-    stop_on(weft_player_draw_moving(player, scene, pace, canvas, &error), &error);
+    stop_on(weft_player_draw_interactive(player, scene, pace, canvas, &error), &error);
     glBindFramebuffer(GL_FRAMEBUFFER, screen);
     weft_canvas_present(canvas, scene, 0);
 }
 
 /* Everything is evaluated, or what is while things move. */
-static const weft_pace calm = {0}, hurried = {.exact_ms = 1000};
+static const weft_pace calm = {0}, interactive = {.exact_ms = 1000};
 
 /* The camera turns a little between frames, so that no driver can reuse one. */
 static void time_frames(weft_player *player, weft_scene scene, const char *what, weft_pace pace, bool adapts,
@@ -73,7 +73,7 @@ static void time_frames(weft_player *player, weft_scene scene, const char *what,
             gpu[frame] = 1e-6 * (double)(end - begin);
         }
         if (adapts)
-            weft_pace_note(&pace, weft_pace_hurries(&pace), bench_now_ms(CLOCK_MONOTONIC) - start, 0);
+            weft_pace_note(&pace, weft_pace_is_interactive(&pace), bench_now_ms(CLOCK_MONOTONIC) - start, 0);
     }
     glDeleteQueries(2, query);
     glDeleteFramebuffers(1, &screen);
@@ -86,7 +86,7 @@ static void time_frames(weft_player *player, weft_scene scene, const char *what,
 
 static void time_scene(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
 {
-    time_frames(player, scene, what, scene.filter == WEFT_FILTER_STOCHASTIC ? hurried : calm, false, canvas);
+    time_frames(player, scene, what, scene.filter == WEFT_FILTER_STOCHASTIC ? interactive : calm, false, canvas);
 }
 
 static void time_moving(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
@@ -94,9 +94,9 @@ static void time_moving(weft_player *player, weft_scene scene, const char *what,
     char text[80];
     scene.filter = WEFT_FILTER_AUTO;
     snprintf(text, sizeof text, "%s, moving, all pixels", what);
-    time_frames(player, scene, text, hurried, false, canvas);
+    time_frames(player, scene, text, interactive, false, canvas);
     snprintf(text, sizeof text, "%s, moving", what);
-    time_frames(player, scene, text, hurried, true, canvas);
+    time_frames(player, scene, text, interactive, true, canvas);
 }
 
 /* What a frame costs that shows nothing. */
@@ -147,7 +147,7 @@ static void judge_environment(weft_player *player, weft_scene scene, weft_canvas
     away.orbit.distance = 500;
     weft_image background = picture(player, &away, 0, 1, canvas);
     scene.filter = WEFT_FILTER_EXACT;
-    weft_image reference = picture(player, &scene, 0, WEFT_ENVIRONMENT_PARTS, canvas);
+    weft_image reference = picture(player, &scene, 0, WEFT_ENVIRONMENT_STRATA, canvas);
     weft_image exact = picture(player, &scene, -1, 1, canvas);
     scene.filter = WEFT_FILTER_STOCHASTIC;
     weft_image moving = picture(player, &scene, -1, 1, canvas);
@@ -198,7 +198,7 @@ static void judge_shown_frames(weft_player *player, const weft_scene *scene, con
 /* What the first frames of a resting picture lack against many. */
 static void judge_rest(weft_player *player, weft_scene scene, weft_canvas *canvas)
 {
-    enum { MANY = 4 * WEFT_ENVIRONMENT_PARTS };
+    enum { MANY = 4 * WEFT_ENVIRONMENT_STRATA };
     weft_scene away = scene;
     away.orbit.distance = 500;
     away.ground = false;

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 365, HEIGHT = 200, MANY = 4 * WEFT_ENVIRONMENT_PARTS, REGIONS = 3, MOST_COUNTS = 8 };
+enum { WIDTH = 365, HEIGHT = 200, MANY = 4 * WEFT_ENVIRONMENT_STRATA, REGIONS = 3, MOST_COUNTS = 8 };
 
 static void stop_on(weft_code code, const weft_error *error)
 {
@@ -34,10 +34,11 @@ static weft_image shown(weft_player *player, const weft_scene *scene, weft_canva
     double start = bench_now_ms(CLOCK_PROCESS_CPUTIME_ID);
     weft_canvas_clear(canvas);
     for (int i = 0; i < (frames > 0 ? frames : 1); i++) {
-        weft_sampling moving = {.frame = -1, .hurry = true};
+        weft_sampling moving = {.frame = -1, .interactive = true};
         weft_canvas_begin_frame(canvas);
-        stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, frames > 0 ? weft_sampling_at_rest(i) : moving, &error),
-                &error);
+        stop_on(
+            weft_player_draw(player, scene, WIDTH, HEIGHT, frames > 0 ? weft_sampling_converging(i) : moving, &error),
+            &error);
         weft_canvas_end_frame(canvas);
     }
     stop_on(weft_canvas_read(canvas, &image, &error), &error);
@@ -85,7 +86,7 @@ static void move(weft_player *player, const weft_scene *scene, bool is_new, weft
     moved.environment_turn_rad += is_new ? 0.01 : 0;
     weft_canvas_clear(canvas);
     weft_canvas_begin_frame(canvas);
-    stop_on(weft_player_draw(player, &moved, WIDTH, HEIGHT, (weft_sampling){.frame = -1, .hurry = true}, &error),
+    stop_on(weft_player_draw(player, &moved, WIDTH, HEIGHT, (weft_sampling){.frame = -1, .interactive = true}, &error),
             &error);
     weft_canvas_end_frame(canvas);
 }

@@ -6,47 +6,47 @@
 
 #include <stdio.h>
 
-enum { HURRIED_COMPONENTS = 16 };
+enum { INTERACTIVE_COMPONENTS = 16 };
 
-/* A frame has the shadows of few directions of the environment. A fold that sees none of them is not black: it sees
- * this share of all. */
-static const double seen_of_none = 0.12;
+/* A frame samples few directions of the environment. A fold that sees none of them is not black: its visibility is at
+ * least this. */
+static const double visibility_of_none = 0.12;
 
 static weft_lighting lighting_of(const weft_player *p, const weft_scene *scene, const weft_sampling *sampling)
 {
     weft_lighting lighting = weft_lighting_of(scene, p->environment, sampling->frame);
     if (!sampling->neighbours_differ)
-        weft_lighting_keep_one_kind(&lighting);
+        weft_lighting_without_interleaving(&lighting);
     return lighting;
 }
 
-/* Alone they would show it: a frame that moves, and the first one at rest. Of a mean it is a part
- * that falls as the frames become more. Saved pictures have none of it. */
-static double least_fill(const weft_sampling *sampling)
+/* Only for a frame that is seen by itself: an interactive one, and the first that converges. Saved pictures are
+ * unbiased. */
+static double least_visibility_of(const weft_sampling *sampling)
 {
     bool is_alone = sampling->frame < 0 || (sampling->frame == 0 && sampling->neighbours_differ);
-    return is_alone ? seen_of_none : 0;
+    return is_alone ? visibility_of_none : 0;
 }
 
 static void set_lights(const weft_player *p, GLuint program, const weft_scene *scene, const weft_sampling *sampling)
 {
     weft_lighting lighting = lighting_of(p, scene, sampling);
     weft_gl_set_int(program, "light_count", lighting.count);
-    int held = weft_lighting_held(&lighting);
+    int held = weft_lighting_stored(&lighting);
     glUniform3fv(weft_gl_uniform(program, "light_direction"), held, lighting.direction[0]);
     glUniform3fv(weft_gl_uniform(program, "light_irradiance"), held, lighting.irradiance[0]);
     weft_gl_set_int(program, "scene_count", lighting.scene_count);
-    weft_gl_set_int(program, "set_count", lighting.set_count);
+    weft_gl_set_int(program, "interleave_count", lighting.interleave_count);
     weft_gl_set_int(program, "key_count", lighting.key_count);
-    weft_gl_set_int(program, "fill_count", lighting.fill_count);
-    weft_gl_set_float(program, "fill_least", least_fill(sampling));
-    /* What moves under many lights has no time for more. */
-    weft_gl_set_int(program, "shadow_taps", sampling->frame < 0 && lighting.fill_count > 0 ? 1 : 4);
-    for (int i = 0; i < lighting.fill_count; i++) {
+    weft_gl_set_int(program, "sample_count", lighting.sample_count);
+    weft_gl_set_float(program, "least_visibility", least_visibility_of(sampling));
+    /* Interactive frames under many lights have no time for more. */
+    weft_gl_set_int(program, "shadow_taps", sampling->frame < 0 && lighting.sample_count > 0 ? 1 : 4);
+    for (int i = 0; i < lighting.sample_count; i++) {
         char name[32];
-        snprintf(name, sizeof name, "fill_direction[%d]", i);
-        weft_gl_set_vec3(program, name, (double)lighting.fill[i].x, (double)lighting.fill[i].y,
-                         (double)lighting.fill[i].z);
+        snprintf(name, sizeof name, "sample_direction[%d]", i);
+        weft_gl_set_vec3(program, name, (double)lighting.sample[i].x, (double)lighting.sample[i].y,
+                         (double)lighting.sample[i].z);
     }
 }
 
@@ -142,7 +142,7 @@ static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft
     weft_player_set_point(p, program, scene, pane, layer);
     set_shown(p, program, scene, pane->mode);
     weft_player_bind_mode(p, scene, pane->mode, program);
-    /* A frame at rest takes longer and shows less of its choices. */
+    /* A converging frame may take longer, and shows less noise. */
     if (pane->mode == WEFT_MODE_ANALYTIC && !weft_player_has_threads(p))
         weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
     weft_player_shade(p, pane, layer, target);
@@ -291,7 +291,7 @@ static weft_code check_scene(const weft_player *p, const weft_scene *scene, int 
 static weft_scene with_few_components(const weft_scene *scene)
 {
     weft_scene few = *scene;
-    few.components = few.components < HURRIED_COMPONENTS ? few.components : HURRIED_COMPONENTS;
+    few.components = few.components < INTERACTIVE_COMPONENTS ? few.components : INTERACTIVE_COMPONENTS;
     return few;
 }
 
@@ -300,7 +300,7 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *asked, int width, i
 {
     static weft_code (*const draw[WEFT_LAYOUT_COUNT])(weft_player *, const weft_scene *, const weft_pane *, GLuint,
                                                       weft_error *) = {draw_panes, draw_wipe, draw_difference};
-    const weft_scene few = with_few_components(asked), *scene = sampling.hurry ? &few : asked;
+    const weft_scene few = with_few_components(asked), *scene = sampling.interactive ? &few : asked;
     WEFT_TRY(check_scene(p, scene, width, height, error));
     GLint target;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);

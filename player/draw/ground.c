@@ -9,7 +9,7 @@
 enum { MAX_SIDE = 1024 };
 
 /* Directions that a frame adds to a sum that is not whole. */
-enum { MOVING_DIRECTIONS = 4, RESTING_DIRECTIONS = 8 };
+enum { INTERACTIVE_DIRECTIONS = 4, CONVERGING_DIRECTIONS = 8 };
 
 static const double backdrop[3] = {0.34, 0.335, 0.33};
 
@@ -124,7 +124,7 @@ double weft_player_shadow_detail(int width, int height)
 
 /* Longest shadow that the sum holds, in radii of the mesh: beyond, little is seen of the ground. And what of the
  * environment stands lower than this brings little to it. */
-static const double furthest = 6, low_fill_rad = 66 * WEFT_PI / 180;
+static const double furthest = 6, low_environment_rad = 66 * WEFT_PI / 180;
 
 static double reach_of(const weft_player *p, double theta_rad)
 {
@@ -157,7 +157,7 @@ static weft_code follow_light(weft_player *p, const weft_scene *scene, int part,
     const weft_angles key = scene->light[0].direction;
     const double light[WEFT_GROUND_LIGHTS][3] = {{key.theta_rad, key.phi_rad, scene->key_size_rad},
                                                  {scene->environment_turn_rad}};
-    double lowest_rad = part == 0 ? key.theta_rad + scene->key_size_rad : low_fill_rad;
+    double lowest_rad = part == 0 ? key.theta_rad + scene->key_size_rad : low_environment_rad;
     return follow(p, &p->ground_shadow[part], light[part], reach_of(p, lowest_rad), detail, error);
 }
 
@@ -206,7 +206,7 @@ static weft_code sum_shadows(weft_player *p, const weft_scene *scene, int direct
 
 weft_code weft_player_advance_ground(weft_player *p, const weft_scene *scene, const weft_pane *whole, weft_error *error)
 {
-    return sum_shadows(p, scene, whole->sampling.frame < 0 ? MOVING_DIRECTIONS : RESTING_DIRECTIONS,
+    return sum_shadows(p, scene, whole->sampling.frame < 0 ? INTERACTIVE_DIRECTIONS : CONVERGING_DIRECTIONS,
                        weft_player_shadow_detail(whole->width, whole->height), error);
 }
 
@@ -222,7 +222,7 @@ static void set_light(const weft_player *p, GLuint program, const weft_scene *sc
 {
     weft_lighting l = weft_lighting_of(scene, p->environment, -1);
     float sum[WEFT_GROUND_LIGHTS][3] = {{0}};
-    for (int i = 0; i < weft_lighting_held(&l); i++) {
+    for (int i = 0; i < weft_lighting_stored(&l); i++) {
         for (int c = 0; c < 3; c++)
             sum[i > 0 || l.scene_count == 0][c] += l.irradiance[i][c] * fmaxf(l.direction[i][2], 0);
     }
@@ -231,7 +231,7 @@ static void set_light(const weft_player *p, GLuint program, const weft_scene *sc
 
 static void set_shadows(const weft_player *p, GLuint program, const weft_scene *scene)
 {
-    static const char *const name[WEFT_GROUND_LIGHTS] = {"key_hidden", "fill_hidden"};
+    static const char *const name[WEFT_GROUND_LIGHTS] = {"key_hidden", "environment_hidden"};
     GLfloat side[WEFT_GROUND_LIGHTS], share[WEFT_GROUND_LIGHTS];
     for (int i = 0; i < WEFT_GROUND_LIGHTS; i++) {
         const weft_ground_shadow *shadow = &p->ground_shadow[i];

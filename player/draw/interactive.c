@@ -8,10 +8,10 @@ static double side_of(const weft_scene *scene, const weft_pace *pace, const weft
     return fmin(1, fmax(weft_pace_side(pace), (double)weft_scene_panes(scene) / canvas->width));
 }
 
-weft_code weft_player_draw_moving(weft_player *p, const weft_scene *scene, const weft_pace *pace, weft_canvas *canvas,
-                                  weft_error *error)
+weft_code weft_player_draw_interactive(weft_player *p, const weft_scene *scene, const weft_pace *pace,
+                                       weft_canvas *canvas, weft_error *error)
 {
-    const weft_sampling sampling = {.frame = -1, .hurry = weft_pace_hurries(pace)};
+    const weft_sampling sampling = {.frame = -1, .interactive = weft_pace_is_interactive(pace)};
     double side = side_of(scene, pace, canvas);
     weft_canvas_clear(canvas);
     if (side == 1) {
@@ -20,10 +20,10 @@ weft_code weft_player_draw_moving(weft_player *p, const weft_scene *scene, const
         weft_canvas_end_frame(canvas);
         return WEFT_OK;
     }
-    weft_scene wordless = *scene;
-    wordless.labels = false;
+    weft_scene unlabelled = *scene;
+    unlabelled.labels = false;
     weft_canvas_begin_small_frame(canvas, side);
-    WEFT_TRY(weft_player_draw(p, &wordless, canvas->drawn_width, canvas->drawn_height, sampling, error));
+    WEFT_TRY(weft_player_draw(p, &unlabelled, canvas->drawn_width, canvas->drawn_height, sampling, error));
     weft_canvas_end_frame(canvas);
     return weft_player_draw_labels(p, scene, canvas->width, canvas->height, error);
 }
@@ -43,7 +43,7 @@ static double radical_inverse(int index, int base)
     return result;
 }
 
-weft_sampling weft_sampling_at_rest(int frame)
+weft_sampling weft_sampling_converging(int frame)
 {
     return (weft_sampling){
         .shift_x = frame > 0 ? radical_inverse(frame, 2) - 0.5 : 0,

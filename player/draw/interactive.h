@@ -5,13 +5,13 @@
 #include "player/draw/pace.h"
 #include "player/draw/player.h"
 
-/* Draws it as `pace` says: with fewer pixels it is enlarged, but for its words. What the canvas had is forgotten.
+/* Draws an interactive frame as `pace` says. A smaller frame is enlarged, its labels are not. Clears the canvas.
  * Errors: those of weft_player_draw. */
-weft_code weft_player_draw_moving(weft_player *player, const weft_scene *scene, const weft_pace *pace,
-                                  weft_canvas *canvas, weft_error *error);
+weft_code weft_player_draw_interactive(weft_player *player, const weft_scene *scene, const weft_pace *pace,
+                                       weft_canvas *canvas, weft_error *error);
 
-/* Of the frame-th of them, from 0: the first lies on the middles of the pixels, any first few spread evenly over them.
- */
-weft_sampling weft_sampling_at_rest(int frame);
+/* Sampling of frame number `frame`, from 0: the first lies on the centres of the pixels, any first few are evenly
+ * distributed over them. Pure. */
+weft_sampling weft_sampling_converging(int frame);
 
 #endif

@@ -51,34 +51,35 @@ static double brightness_on_ground(const weft_distant_light *light)
     return brightness(light) * (double)light->direction.z;
 }
 
-/* The i-th light that shadows may come from: a region, or at rest a part of one. Those that follow each other lie
+/* The i-th light that shadows may come from: a region, or in a converging picture a stratum of one. Successive ones lie
  * beside each other. */
-static const weft_distant_light *fill_light(const weft_environment *environment, bool rests, int i)
+static const weft_distant_light *sampled_light(const weft_environment *environment, bool converges, int i)
 {
-    return rests ? &environment->part[weft_environment_frame_of(i % WEFT_ENVIRONMENT_PARTS)][i / WEFT_ENVIRONMENT_PARTS]
-                 : &environment->region[i];
+    return converges ? &environment->stratum[weft_environment_frame_of_stratum(i % WEFT_ENVIRONMENT_STRATA)]
+                                            [i / WEFT_ENVIRONMENT_STRATA]
+                     : &environment->region[i];
 }
 
-/* Those above the horizon that the shares at[count], which increase, of all their brightness fall into. */
-static void find_fill(const weft_environment *environment, bool rests, brightness_of *bright, const double *at,
-                      int count, weft_vec3 *fill)
+/* Inverts the cumulative brightness of the lights above the horizon at the increasing shares at[count]. */
+static void find_samples(const weft_environment *environment, bool converges, brightness_of *bright, const double *at,
+                         int count, weft_vec3 *sample)
 {
-    int light_count = environment->region_count * (rests ? WEFT_ENVIRONMENT_PARTS : 1);
+    int light_count = environment->region_count * (converges ? WEFT_ENVIRONMENT_STRATA : 1);
     double total = 0, passed = 0;
     for (int i = 0; i < light_count; i++)
-        total += bright(fill_light(environment, rests, i));
+        total += bright(sampled_light(environment, converges, i));
     int found = 0;
     for (int i = 0; i < light_count && found < count; i++) {
-        const weft_distant_light *light = fill_light(environment, rests, i);
+        const weft_distant_light *light = sampled_light(environment, converges, i);
         passed += bright(light);
         for (; found < count && at[found] * total < passed; found++)
-            fill[found] = light->direction;
+            sample[found] = light->direction;
     }
     for (; found < count; found++)
-        fill[found] = weft_vec3_of(0, 0, 1);
+        sample[found] = weft_vec3_of(0, 0, 1);
 }
 
-/* One shadow a frame would leave bands in the penumbra of a picture that has just come to rest. */
+/* One place a frame would leave bands in the penumbra after the first frames. */
 static void choose_key(weft_lighting *l, const weft_scene *scene, long frame)
 {
     bool is_one = frame < 0 || !(scene->key_size_rad > 0);
@@ -87,48 +88,51 @@ static void choose_key(weft_lighting *l, const weft_scene *scene, long frame)
         l->key[i] = weft_lighting_key_place(scene, is_one ? frame : frame * WEFT_KEY_PLACES + i);
 }
 
-/* All of them move on a frame. Lights lie along a curve that fills the sphere, and places on it are even in time. */
-static void choose_fill(weft_lighting *l, const weft_scene *scene, const weft_environment *environment, long frame)
+/* All of them move from frame to frame. The lights lie along a curve that fills the sphere, and the places on it are
+ * evenly distributed in time. */
+static void choose_samples(weft_lighting *l, const weft_scene *scene, const weft_environment *environment, long frame)
 {
-    double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1), at[WEFT_FILL_DIRECTIONS];
-    l->fill_count = frame < 0 ? WEFT_FILL_MOVING : WEFT_FILL_DIRECTIONS;
-    for (int i = 0; i < l->fill_count; i++)
-        at[i] = (i + place) / l->fill_count;
-    find_fill(environment, frame >= 0, brightness, at, l->fill_count, l->fill);
-    for (int i = 0; i < l->fill_count; i++)
-        l->fill[i] = turned(l->fill[i], scene->environment_turn_rad);
+    double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1), at[WEFT_ENVIRONMENT_SAMPLES];
+    l->sample_count = frame < 0 ? WEFT_INTERACTIVE_SAMPLES : WEFT_ENVIRONMENT_SAMPLES;
+    for (int i = 0; i < l->sample_count; i++)
+        at[i] = (i + place) / l->sample_count;
+    find_samples(environment, frame >= 0, brightness, at, l->sample_count, l->sample);
+    for (int i = 0; i < l->sample_count; i++)
+        l->sample[i] = turned(l->sample[i], scene->environment_turn_rad);
 }
 
 weft_vec3 weft_lighting_ground_place(const weft_scene *scene, const weft_environment *environment, long number)
 {
     const double at = fmod(0.5 + (double)number * 0.6180339887498949, 1);
     weft_vec3 direction;
-    find_fill(environment, true, brightness_on_ground, &at, 1, &direction);
+    find_samples(environment, true, brightness_on_ground, &at, 1, &direction);
     return turned(direction, scene->environment_turn_rad);
 }
 
-/* The part of its regions that a frame lights pixels of one kind from. Each kind takes all of them in turn. Of the bits
- * of a part the low ones tell the coarse place within the region, the high ones the fine one: kinds differ in both, so
- * that neighbours complete each other in one frame, and in the mean of sixteen. */
-static int part_of(long frame, int kind)
+/* The stratum that lights pixels of one index in a frame. Each index takes all strata in turn. The low bits of a
+ * stratum are the coarse place within the region, the high bits the fine one. Indices differ in both, so that
+ * neighbours complete each other in one frame, and in the mean of sixteen. */
+static int stratum_of(long frame, int index)
 {
-    return (int)((frame ^ kind ^ (long)kind << 4) % WEFT_ENVIRONMENT_PARTS);
+    return (int)((frame ^ index ^ (long)index << 4) % WEFT_ENVIRONMENT_STRATA);
 }
 
 static void add_environment(weft_lighting *l, const weft_scene *scene, const weft_environment *environment, long frame)
 {
     int room = (WEFT_MAX_LIGHTS - l->scene_count) / environment->region_count;
-    /* Where a light is tinted it has to be the same in neighbouring pixels. */
-    l->set_count = frame < 0 || scene->show_extrapolation ? 1 : room < WEFT_LIGHT_SETS ? room : WEFT_LIGHT_SETS;
+    /* A tint must not change from pixel to pixel. */
+    l->interleave_count = frame < 0 || scene->show_extrapolation ? 1
+                          : room < WEFT_INTERLEAVED_LIGHTS       ? room
+                                                                 : WEFT_INTERLEAVED_LIGHTS;
     for (int i = 0; i < environment->region_count; i++) {
-        for (int kind = 0; kind < l->set_count; kind++) {
+        for (int index = 0; index < l->interleave_count; index++) {
             const weft_distant_light *light =
-                frame < 0 ? &environment->region[i] : &environment->part[part_of(frame, kind)][i];
+                frame < 0 ? &environment->region[i] : &environment->stratum[stratum_of(frame, index)][i];
             double irradiance[3];
             for (int c = 0; c < 3; c++)
                 irradiance[c] = scene->environment_strength * (double)light->irradiance[c];
-            set(l, l->scene_count + i * l->set_count + kind, turned(light->direction, scene->environment_turn_rad),
-                irradiance);
+            set(l, l->scene_count + i * l->interleave_count + index,
+                turned(light->direction, scene->environment_turn_rad), irradiance);
         }
         l->count++;
     }
@@ -136,7 +140,7 @@ static void add_environment(weft_lighting *l, const weft_scene *scene, const wef
 
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame)
 {
-    weft_lighting lighting = {.set_count = 1};
+    weft_lighting lighting = {.interleave_count = 1};
     for (int i = 0; i < scene->light_count; i++)
         add(&lighting,
             i == 0 ? weft_lighting_key_place(scene, frame) : weft_direction_of_angles(scene->light[i].direction),
@@ -145,26 +149,26 @@ weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *
     choose_key(&lighting, scene, frame);
     if (environment && scene->environment) {
         add_environment(&lighting, scene, environment, frame);
-        choose_fill(&lighting, scene, environment, frame);
+        choose_samples(&lighting, scene, environment, frame);
     }
     if (lighting.count == 0)
         add(&lighting, weft_vec3_of(0, 0, 1), (const double[3]){0, 0, 0});
     return lighting;
 }
 
-void weft_lighting_keep_one_kind(weft_lighting *lighting)
+void weft_lighting_without_interleaving(weft_lighting *lighting)
 {
     for (int i = lighting->scene_count; i < lighting->count; i++) {
-        int kept = lighting->scene_count + (i - lighting->scene_count) * lighting->set_count;
+        int kept = lighting->scene_count + (i - lighting->scene_count) * lighting->interleave_count;
         memcpy(lighting->direction[i], lighting->direction[kept], sizeof lighting->direction[i]);
         memcpy(lighting->irradiance[i], lighting->irradiance[kept], sizeof lighting->irradiance[i]);
     }
-    lighting->set_count = 1;
+    lighting->interleave_count = 1;
 }
 
-int weft_lighting_held(const weft_lighting *lighting)
+int weft_lighting_stored(const weft_lighting *lighting)
 {
-    return lighting->scene_count + (lighting->count - lighting->scene_count) * lighting->set_count;
+    return lighting->scene_count + (lighting->count - lighting->scene_count) * lighting->interleave_count;
 }
 
 int weft_lighting_count(const weft_scene *scene, const weft_environment *environment)

@@ -5,24 +5,24 @@
 enum { SIDES = 6, SLOW_FRAMES = 2, FAST_FRAMES = 8 };
 
 static const double sides[SIDES] = {1, 5.0 / 6, 2.0 / 3, 1.0 / 2, 1.0 / 3, 1.0 / 4};
-static const double spare = 0.85;       /* of the promised time, that a larger picture may take */
+static const double spare = 0.85;       /* share of the target that a larger picture may take */
 static const double least_budget = 0.2; /* of it, for drawing: nothing is won where the panel alone takes all */
 static const double memory = 0.8;       /* of exact_ms, from frame to frame */
 
-bool weft_pace_hurries(const weft_pace *pace)
+bool weft_pace_is_interactive(const weft_pace *pace)
 {
-    return pace->exact_ms > WEFT_PACE_HURRY_MS;
+    return pace->exact_ms > WEFT_PACE_INTERACTIVE_MS;
 }
 
 double weft_pace_side(const weft_pace *pace)
 {
-    return weft_pace_hurries(pace) ? sides[pace->step] : 1;
+    return weft_pace_is_interactive(pace) ? sides[pace->step] : 1;
 }
 
-/* What drawing may take of `promised_ms`. */
-static double budget_ms(double promised_ms, double shown_ms)
+/* The part of `target_ms` that is left for drawing. */
+static double budget_ms(double target_ms, double shown_ms)
 {
-    return fmax(promised_ms - shown_ms, least_budget * promised_ms);
+    return fmax(target_ms - shown_ms, least_budget * target_ms);
 }
 
 /* The side that there was time for; as if nothing of a frame were the same for all sides. */
@@ -59,11 +59,11 @@ static void note_exact(weft_pace *pace, double drawn_ms)
     pace->last_ms = drawn_ms;
 }
 
-void weft_pace_note(weft_pace *pace, bool hurried, double drawn_ms, double shown_ms)
+void weft_pace_note(weft_pace *pace, bool interactive, double drawn_ms, double shown_ms)
 {
     if (!(drawn_ms >= 0 && shown_ms >= 0) || !isfinite(drawn_ms) || !isfinite(shown_ms))
         return;
-    if (!hurried) {
+    if (!interactive) {
         note_exact(pace, drawn_ms);
         return;
     }

@@ -11,7 +11,7 @@ enum { MAX_SIDE = 16384, MAX_SAMPLES = 64, SOFT_FRAMES = 36 };
 static long least_frames(const weft_scene *scene, int width, int height)
 {
     bool is_soft = scene->environment || (scene->light_count > 0 && scene->key_size_rad > 0);
-    return scene->environment_reference ? WEFT_ENVIRONMENT_PARTS
+    return scene->environment_reference ? WEFT_ENVIRONMENT_STRATA
            : weft_scene_has_shadows(scene) && is_soft
                ? (long)ceil(SOFT_FRAMES * weft_player_shadow_detail(width, height))
                : 1;

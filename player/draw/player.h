@@ -84,13 +84,13 @@ typedef struct weft_sampling {
     /* A pixel that is so many times as long as wide on the material, or less, has the level of its width: frames of a
      * mean see places all along it. Below 1 as 1: the level of its length. */
     double longest_pixel;
-    long frame; /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
-    /* Neighbouring pixels of a frame of a mean are lit from other parts of the environment: a mean of few frames is
-     * grain then, instead of a lean. One of many frames is smooth without. */
+    long frame; /* number of the frame in a mean; -1: a single frame, to be good by itself */
+    /* Interleaved sampling of the environment (player/draw/lighting.h): a mean of few frames has grain instead of a
+     * wrong brightness. A mean of many frames is smooth without it. */
     bool neighbours_differ;
-    /* WEFT_FILTER_AUTO is then stochastic, of components the first 16 are drawn, and of an environment two lights a
-     * pixel, by chance. */
-    bool hurry;
+    /* Fast and approximate: WEFT_FILTER_AUTO is stochastic, only the first 16 components are drawn, and two random
+     * lights of the environment a pixel. */
+    bool interactive;
 } weft_sampling;
 
 /* Draws into the current framebuffer, width x height pixels of floats: linear radiance, or the signed difference of two

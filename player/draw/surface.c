@@ -191,7 +191,8 @@ static weft_code draw_shadow(weft_player *p, const weft_scene *scene, int layer,
     return WEFT_OK;
 }
 
-_Static_assert(WEFT_KEY_PLACES + WEFT_FILL_DIRECTIONS <= WEFT_SHADOW_LAYERS, "every shadow of a frame has its layer");
+_Static_assert(WEFT_KEY_PLACES + WEFT_ENVIRONMENT_SAMPLES <= WEFT_SHADOW_LAYERS,
+               "every shadow of a frame has its layer");
 
 weft_code weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long frame, weft_error *error)
 {
@@ -203,7 +204,7 @@ weft_code weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long
     bool is_soft = scene->key_size_rad > 0 || (frame < 0 && p->shadow_holes.any);
     for (int i = 0; i < lighting.key_count; i++)
         WEFT_TRY(draw_shadow(p, scene, i, lighting.key[i], is_soft, frame, error));
-    for (int i = 0; i < lighting.fill_count; i++)
-        WEFT_TRY(draw_shadow(p, scene, WEFT_KEY_PLACES + i, lighting.fill[i], true, frame, error));
+    for (int i = 0; i < lighting.sample_count; i++)
+        WEFT_TRY(draw_shadow(p, scene, WEFT_KEY_PLACES + i, lighting.sample[i], true, frame, error));
     return WEFT_OK;
 }

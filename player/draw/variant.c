@@ -3,7 +3,7 @@
 
 #include "player/draw/lighting.h"
 
-enum { HURRIED_LIGHTS = 2 };
+enum { INTERACTIVE_LIGHTS = 2 };
 
 /* They take other texture units than lobes do. */
 static bool uses_components(const weft_player *p, const weft_scene *scene)
@@ -42,7 +42,7 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
 static bool is_stochastic(const weft_player *p, const weft_scene *scene, weft_sampling sampling)
 {
     if (scene->filter == WEFT_FILTER_AUTO)
-        return sampling.hurry || (scene->environment && p->environment);
+        return sampling.interactive || (scene->environment && p->environment);
     return scene->filter == WEFT_FILTER_STOCHASTIC;
 }
 
@@ -54,10 +54,10 @@ weft_variant weft_player_variant(const weft_player *p, const weft_scene *scene, 
         .shadows = weft_scene_has_shadows(scene),
         .one_light = weft_lighting_count(scene, p->environment) == 1,
     };
-    bool has_many = scene->environment && p->environment && p->environment->region_count > HURRIED_LIGHTS;
+    bool has_many = scene->environment && p->environment && p->environment->region_count > INTERACTIVE_LIGHTS;
     /* Where a light is tinted it has to be the same in neighbouring pixels. */
-    if (pane->sampling.hurry && has_many && !scene->show_extrapolation)
-        variant.chosen_lights = HURRIED_LIGHTS;
+    if (pane->sampling.interactive && has_many && !scene->show_extrapolation)
+        variant.chosen_lights = INTERACTIVE_LIGHTS;
     variant.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
     variant.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
     if (pane->mode == WEFT_MODE_RAW) {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LARGEST_WIDTH = 1024, PART_CUTS = 11 };
+enum { LARGEST_WIDTH = 1024, STRATUM_CUTS = 11 };
 
 /* Sums over the pixels above and left of a corner: power, and power times direction. [height + 1][width + 1] */
 enum { RED, GREEN, BLUE, WEIGHT, X, Y, Z, SUMS };
@@ -163,50 +163,51 @@ static weft_distant_light light_of(const double sum[SUMS], double scale)
 
 /* Reversed bits: neighbours become far apart in time. Without more, the first frames would
  * all take a corner of the region and of each of its quarters; so two cuts in four, which are one across and one
- * upright, count from their other end: the part then lies a third from the edges. */
-int weft_environment_frame_of(int part)
+ * upright, count from their other end: the stratum then lies a third from the edges. */
+int weft_environment_frame_of_stratum(int stratum)
 {
     const int other_end = 0x19;
     int frame = 0;
-    for (int bit = 1; bit < WEFT_ENVIRONMENT_PARTS; bit <<= 1)
-        frame = frame << 1 | (((part ^ other_end) & bit) != 0);
+    for (int bit = 1; bit < WEFT_ENVIRONMENT_STRATA; bit <<= 1)
+        frame = frame << 1 | (((stratum ^ other_end) & bit) != 0);
     return frame;
 }
 
 /* Parts being filled one after the other, each up to its share of the region's weight. */
 typedef struct filling {
     weft_environment *environment;
-    int region, part;
-    double capacity; /* of a part */
-    sums sum;        /* of the part being filled */
+    int region, stratum;
+    double capacity; /* of a stratum */
+    sums sum;        /* of the stratum being filled */
 } filling;
 
-static void finish_part(filling *f)
+static void finish_stratum(filling *f)
 {
-    f->environment->part[weft_environment_frame_of(f->part)][f->region] = light_of(f->sum, WEFT_ENVIRONMENT_PARTS);
+    f->environment->stratum[weft_environment_frame_of_stratum(f->stratum)][f->region] =
+        light_of(f->sum, WEFT_ENVIRONMENT_STRATA);
     memset(f->sum, 0, sizeof f->sum);
-    f->part++;
+    f->stratum++;
 }
 
-/* A piece goes into as many parts as it fills. */
+/* A piece goes into as many strata as it fills. */
 static void add_piece(filling *f, const double piece[SUMS])
 {
     double used = 0;
     while (used < 1 && piece[WEIGHT] > 0) {
         double room = (f->capacity - f->sum[WEIGHT]) / piece[WEIGHT];
-        bool is_last = f->part == WEFT_ENVIRONMENT_PARTS - 1;
+        bool is_last = f->stratum == WEFT_ENVIRONMENT_STRATA - 1;
         double share = is_last || room > 1 - used ? 1 - used : room;
         for (int i = 0; i < SUMS; i++)
             f->sum[i] += share * piece[i];
         if (share < 1 - used)
-            finish_part(f);
+            finish_stratum(f);
         used += share;
     }
 }
 
 static void add_pieces(const map *m, const region *r, int depth, filling *f)
 {
-    if (depth == PART_CUTS || is_pixel(r) || !(sum_of(m, r, WEIGHT) > 0)) {
+    if (depth == STRATUM_CUTS || is_pixel(r) || !(sum_of(m, r, WEIGHT) > 0)) {
         sums piece;
         for (int i = 0; i < SUMS; i++)
             piece[i] = sum_of(m, r, i);
@@ -225,10 +226,10 @@ static void set_region(const map *m, const region *r, int number, weft_environme
     for (int i = 0; i < SUMS; i++)
         sum[i] = sum_of(m, r, i);
     environment->region[number] = light_of(sum, 1);
-    filling f = {.environment = environment, .region = number, .capacity = sum[WEIGHT] / WEFT_ENVIRONMENT_PARTS};
+    filling f = {.environment = environment, .region = number, .capacity = sum[WEIGHT] / WEFT_ENVIRONMENT_STRATA};
     add_pieces(m, r, 0, &f);
-    while (f.part < WEFT_ENVIRONMENT_PARTS)
-        finish_part(&f);
+    while (f.stratum < WEFT_ENVIRONMENT_STRATA)
+        finish_stratum(&f);
 }
 
 static void set_lights(const map *m, int most, weft_environment *environment)
@@ -241,8 +242,8 @@ static void set_lights(const map *m, int most, weft_environment *environment)
             set_region(m, &regions[i], i, environment);
         else
             environment->region[i].direction = weft_vec3_of(0, 0, 1);
-        for (int part = 0; i >= count && part < WEFT_ENVIRONMENT_PARTS; part++)
-            environment->part[part][i].direction = weft_vec3_of(0, 0, 1);
+        for (int stratum = 0; i >= count && stratum < WEFT_ENVIRONMENT_STRATA; stratum++)
+            environment->stratum[stratum][i].direction = weft_vec3_of(0, 0, 1);
     }
 }
 

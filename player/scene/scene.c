@@ -5,11 +5,11 @@
 #include <math.h>
 #include <stddef.h>
 
-const char *const weft_mode_words[] = {"raw", "compressed", "analytic", NULL};
+const char *const weft_mode_names[] = {"raw", "compressed", "analytic", NULL};
 
 const char *weft_mode_name(weft_mode mode)
 {
-    return weft_mode_words[mode];
+    return weft_mode_names[mode];
 }
 
 weft_scene weft_scene_default(void)

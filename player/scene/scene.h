@@ -11,7 +11,7 @@
 typedef enum weft_mode { WEFT_MODE_RAW, WEFT_MODE_COMPRESSED, WEFT_MODE_ANALYTIC, WEFT_MODE_COUNT } weft_mode;
 
 /* "raw", "compressed", "analytic" and NULL, in the order of weft_mode. */
-extern const char *const weft_mode_words[];
+extern const char *const weft_mode_names[];
 
 /* One of them. Pure. */
 const char *weft_mode_name(weft_mode mode);

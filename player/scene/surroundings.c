@@ -5,7 +5,7 @@
 
 enum { WIDTH = 256, HEIGHT = 128 };
 
-const char *const weft_surroundings_words[] = {"studio", "overcast", "sky", NULL};
+const char *const weft_surroundings_names[] = {"studio", "overcast", "sky", NULL};
 
 /* ---- Studio ---- */
 

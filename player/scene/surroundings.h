@@ -9,7 +9,7 @@
 #include "player/scene/scene.h"
 
 /* "studio", "overcast", "sky" and NULL. */
-extern const char *const weft_surroundings_words[];
+extern const char *const weft_surroundings_names[];
 
 bool weft_surroundings_are(const char *name);
 

@@ -91,8 +91,8 @@ static weft_code in_studio(weft_settings *settings, weft_error *error)
     char **environment = &settings->environment;
     if (settings->has_lights || weft_settings_has(settings, "environment"))
         return WEFT_OK;
-    weft_settings_light(settings, weft_surroundings_words[0]);
-    return weft_option_copy(weft_surroundings_words[0], environment, error);
+    weft_settings_light(settings, weft_surroundings_names[0]);
+    return weft_option_copy(weft_surroundings_names[0], environment, error);
 }
 
 weft_code weft_first_look(weft_settings *settings, weft_error *error)

@@ -74,7 +74,7 @@ static weft_code take_mode(weft_settings *s, int mode, weft_error *error)
 
 static weft_code choose_modes(const weft_option *option, const char *text, void *target, weft_error *error)
 {
-    const char *const words[] = {weft_mode_words[0], weft_mode_words[1], weft_mode_words[2], "split", NULL};
+    const char *const words[] = {weft_mode_names[0], weft_mode_names[1], weft_mode_names[2], "split", NULL};
     weft_settings *s = target;
     s->scene.pane_count = 0;
     return take_words(option, text, words, s, take_mode, error);
@@ -430,7 +430,7 @@ static const weft_setting schema[] = {
     ARRAY(
         WEFT_MODE_COUNT, "view.modes",
         OPTION("mode", "MODE[,MODE...]", SHOWN, "raw, compressed, analytic: one pane each; split: all that are given"),
-        CHOICE(scene.pane, weft_mode_words), .read = choose_modes),
+        CHOICE(scene.pane, weft_mode_names), .read = choose_modes),
     SETTING("view.panes", WHOLE(scene.pane_count, 1, WEFT_MODE_COUNT)),
     SETTING("view.divider", OPTION("divider", "X", SHOWN, "Where a wipe changes, 0 (left) to 1 (default: 0.5)"),
             NUMBER(scene.divider, 0, 1)),

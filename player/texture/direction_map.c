@@ -193,9 +193,9 @@ static weft_code reserve(weft_direction_map *map, int extra, weft_error *error)
         map->simplex = larger;
         map->simplex_capacity = capacity;
     }
-    void *cell = realloc(map->cell, ((size_t)map->set_count + 1) * sizeof *map->cell);
+    void *cell = realloc(map->cell, ((size_t)map->interleave_count + 1) * sizeof *map->cell);
     if (!cell)
-        return weft_fail_memory(error, "direction map", ((size_t)map->set_count + 1) * sizeof *map->cell);
+        return weft_fail_memory(error, "direction map", ((size_t)map->interleave_count + 1) * sizeof *map->cell);
     map->cell = cell;
     return WEFT_OK;
 }
@@ -219,8 +219,8 @@ static weft_code lay_out(weft_direction_map *map, const weft_vec3 *direction, co
         join_arcs(&l);
         for (int i = l.first; i < map->simplex_count; i++)
             set_forms(&l, i);
-        fill_cells(&l, triangulation, map->cell[map->set_count]);
-        map->set_count++;
+        fill_cells(&l, triangulation, map->cell[map->interleave_count]);
+        map->interleave_count++;
     }
     free(l.corner);
     free(sides);
@@ -267,10 +267,10 @@ static weft_code upload_simplices(const weft_direction_map *map, GLuint *texture
 static weft_code upload_cells(const weft_direction_map *map, GLuint *texture, weft_error *error)
 {
     const weft_texture_format format = {GL_R32I, GL_RED_INTEGER, GL_INT};
-    int rows = rows_for(map->set_count, WEFT_DIRECTION_SETS_PER_ROW);
+    int rows = rows_for(map->interleave_count, WEFT_DIRECTION_SETS_PER_ROW);
     WEFT_TRY(weft_gl_texture(format, WEFT_DIRECTION_SETS_PER_ROW * WEFT_DIRECTION_GRID, rows * WEFT_DIRECTION_GRID, 0,
                              NULL, texture, error));
-    for (int set = 0; set < map->set_count; set++)
+    for (int set = 0; set < map->interleave_count; set++)
         glTexSubImage2D(GL_TEXTURE_2D, 0, set % WEFT_DIRECTION_SETS_PER_ROW * WEFT_DIRECTION_GRID,
                         set / WEFT_DIRECTION_SETS_PER_ROW * WEFT_DIRECTION_GRID, WEFT_DIRECTION_GRID,
                         WEFT_DIRECTION_GRID, GL_RED_INTEGER, GL_INT, map->cell[set]);

@@ -29,13 +29,13 @@ typedef struct weft_simplex {
 } weft_simplex;
 
 typedef struct weft_direction_map {
-    int set_count, simplex_count, simplex_capacity;
+    int interleave_count, simplex_count, simplex_capacity;
     weft_simplex *simplex;
-    int32_t (*cell)[WEFT_DIRECTION_GRID * WEFT_DIRECTION_GRID]; /* [set_count] simplex to start from */
+    int32_t (*cell)[WEFT_DIRECTION_GRID * WEFT_DIRECTION_GRID]; /* [interleave_count] simplex to start from */
 } weft_direction_map;
 
-/* Adds the triangulation of `count` directions as set number map->set_count (before the call). label[i] is what the
- * shader gets for direction i (NULL: i). Start from a zeroed map; the caller frees it with weft_direction_map_free,
+/* Adds the triangulation of `count` directions as set number map->interleave_count (before the call). label[i] is what
+ * the shader gets for direction i (NULL: i). Start from a zeroed map; the caller frees it with weft_direction_map_free,
  * also on failure. Errors: WEFT_BAD_INPUT for what cannot be triangulated, WEFT_SYSTEM. */
 weft_code weft_direction_map_add(weft_direction_map *map, const weft_vec3 *direction, const int *label, int count,
                                  weft_error *error);

@@ -1,7 +1,7 @@
 #include "player/window/panel.h"
 
 #include "base/clock.h"
-#include "player/window/held_out_words.h"
+#include "player/window/held_out_message.h"
 #include "player/window/keys.h"
 #include "player/window/ui/ui_bridge.h"
 
@@ -65,10 +65,10 @@ static void on_key(void *context, int key, int action, int modifiers)
         weft_keys_release(i, key);
     else if (!weft_ui_wants_keyboard())
         weft_keys_press(i, key, modifiers, action == GLFW_REPEAT);
-    if (i->said[0]) {
-        weft_application_tell(a, false, i->said);
+    if (i->message[0]) {
+        weft_application_show_message(a, false, i->message);
         a->note_ends_s = weft_now_s() + short_note_s;
-        i->said[0] = 0;
+        i->message[0] = 0;
     }
 }
 
@@ -151,9 +151,9 @@ static void take_back(weft_application *a)
     bool found = (is_undo ? weft_history_undo : weft_history_redo)(&a->history, &i->scene, &a->weave, &weave_changed);
     i->changed |= found;
     if (weave_changed && weft_weave_edit_ask(&a->weave, &error) != WEFT_OK)
-        weft_application_tell(a, true, error.message);
+        weft_application_show_message(a, true, error.message);
     else if (!found)
-        weft_application_tell(a, false, is_undo ? "nothing to undo" : "nothing to do again");
+        weft_application_show_message(a, false, is_undo ? "nothing to undo" : "nothing to do again");
 }
 
 /* A weave is not lost by one key. */
@@ -162,7 +162,8 @@ static void quit(weft_application *a)
     if (a->weave.is_unsaved && !a->has_warned) {
         a->has_warned = true;
         a->interaction.wants_quit = false;
-        weft_application_tell(a, true, "no file has the weave as it is: save it in the panel, or quit once more");
+        weft_application_show_message(a, true,
+                                      "no file has the weave as it is: save it in the panel, or quit once more");
     } else {
         weft_window_close(a->window);
     }
@@ -218,7 +219,7 @@ static void say_what_holds(weft_application *a)
     const weft_hold_out *held_out = what_holds(a);
     a->held_out[0] = 0;
     if (held_out)
-        weft_held_out_words(held_out, a->held_out);
+        weft_held_out_message(held_out, a->held_out);
 }
 
 /* What the material says of the texel under the pointer, and how sure it is of that. */
@@ -244,7 +245,7 @@ static weft_code evaluate_probe(weft_application *a, weft_error *error)
 static weft_code probe(weft_application *a, weft_error *error)
 {
     const weft_interaction *i = &a->interaction;
-    if (!a->rests || weft_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
+    if (!a->converges || weft_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
         return WEFT_OK;
     weft_probe probe;
     WEFT_TRY(weft_probe_read(a->player, &i->scene, &a->canvas, (int)i->x, (int)i->y, &probe, error));
@@ -311,14 +312,14 @@ static double wait_s(const weft_application *a)
 }
 
 /* What the screen shows is what it would show again. Where frames are timed, each is shown. */
-static bool is_at_rest(weft_application *a)
+static bool is_idle(weft_application *a)
 {
     double now_s = weft_now_s();
     const weft_stir stir = {.has_events = weft_window_take_events(a->window),
                             .is_busy =
                                 is_drawing(a) || is_waiting(a) || weft_ui_wants_keyboard() || a->setup.frame_limit > 0,
                             .note_ends_s = a->note_ends_s};
-    return weft_repose_at(&a->repose, &stir, now_s);
+    return weft_idle_at(&a->idle, &stir, now_s);
 }
 
 static weft_code step(weft_application *a, weft_error *error)
@@ -328,7 +329,7 @@ static weft_code step(weft_application *a, weft_error *error)
     turn_by_itself(a);
     weft_application_poll_files(a);
     weft_panel_follow_weave(a);
-    if (is_at_rest(a))
+    if (is_idle(a))
         return WEFT_OK;
     find_modes(a);
     say_what_holds(a);

@@ -10,7 +10,7 @@
 
 static const double note_s = 8;
 
-void weft_application_tell(weft_application *a, bool is_error, const char *text)
+void weft_application_show_message(weft_application *a, bool is_error, const char *text)
 {
     if (!text[0])
         return;
@@ -20,9 +20,9 @@ void weft_application_tell(weft_application *a, bool is_error, const char *text)
 }
 
 /* What failed is told and the window stays. */
-static void tell_outcome(weft_application *a, weft_code code, const weft_error *error, const char *note)
+static void show_outcome(weft_application *a, weft_code code, const weft_error *error, const char *note)
 {
-    weft_application_tell(a, code != WEFT_OK, code == WEFT_OK ? note : error->message);
+    weft_application_show_message(a, code != WEFT_OK, code == WEFT_OK ? note : error->message);
 }
 
 /* ---- Life ---- */
@@ -63,7 +63,7 @@ void weft_application_list(weft_application *a, const char *folder)
     if (slash)
         snprintf(shown, sizeof shown, "%.*s", slash > path ? (int)(slash - path) : 1, path);
     if (weft_folder_files_read(&a->folder, folder ? folder : shown, &error) != WEFT_OK)
-        weft_application_tell(a, true, error.message);
+        weft_application_show_message(a, true, error.message);
 }
 
 static weft_code watch_files(weft_application *a, weft_error *error)
@@ -89,7 +89,7 @@ void weft_application_open(weft_application *a, const char *path)
     a->interaction.changed = true;
     watch_files(a, &ignored);
     snprintf(note, sizeof note, "reading %.256s", path ? path : "all files again");
-    tell_outcome(a, code, &error, note);
+    show_outcome(a, code, &error, note);
 }
 
 void weft_application_change_surroundings(weft_application *a)
@@ -106,13 +106,13 @@ void weft_application_change_surroundings(weft_application *a)
         weft_surroundings_light(name, scene);
     scene->shadows = scene->ground = !is_bare;
     if (!is_bare)
-        tell_outcome(a, weft_scene_loader_open_surroundings(a->loader, name, &error), &error, "");
+        show_outcome(a, weft_scene_loader_open_surroundings(a->loader, name, &error), &error, "");
 }
 
 void weft_application_change_mesh(weft_application *a)
 {
     weft_error error = {0};
-    tell_outcome(a, weft_scene_loader_open_mesh(a->loader, a->interaction.wants_mesh, &error), &error, "");
+    show_outcome(a, weft_scene_loader_open_mesh(a->loader, a->interaction.wants_mesh, &error), &error, "");
     a->interaction.wants_mesh = NULL;
     a->interaction.changed = true;
 }
@@ -170,7 +170,7 @@ void weft_application_poll_files(weft_application *a)
     if (code == WEFT_OK)
         code = show_arrived(a, note, &error);
     a->progress = weft_scene_loader_progress(a->loader);
-    tell_outcome(a, code, &error, note);
+    show_outcome(a, code, &error, note);
     if (code != WEFT_OK)
         a->failure = error;
 }
@@ -204,5 +204,5 @@ void weft_application_save_picture(weft_application *a)
         weft_log_line(&a->setup.log, note);
     }
     warn_of_changes(a, note);
-    tell_outcome(a, code, &error, note);
+    show_outcome(a, code, &error, note);
 }

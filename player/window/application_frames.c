@@ -38,20 +38,20 @@ weft_code weft_application_prepare_canvas(weft_application *a, int width, int he
     if (i->changed || is_resized) {
         weft_canvas_clear(&a->canvas);
         a->moved_s = weft_now_s();
-        a->rests = false;
+        a->converges = false;
         a->errors[0] = a->unmeasured[0] = 0;
-    } else if (!a->rests && weft_now_s() - a->moved_s > settle_s) {
+    } else if (!a->converges && weft_now_s() - a->moved_s > settle_s) {
         weft_canvas_clear(&a->canvas);
-        a->rests = true;
+        a->converges = true;
     }
     i->changed = false;
     return WEFT_OK;
 }
 
-static weft_code draw_resting(weft_application *a, weft_error *error)
+static weft_code draw_converging(weft_application *a, weft_error *error)
 {
     weft_canvas *canvas = &a->canvas;
-    weft_sampling sampling = weft_sampling_at_rest(canvas->frame_count);
+    weft_sampling sampling = weft_sampling_converging(canvas->frame_count);
     weft_canvas_begin_frame(canvas);
     WEFT_TRY(weft_player_draw(a->player, &a->interaction.scene, canvas->width, canvas->height, sampling, error));
     weft_canvas_end_frame(canvas);
@@ -61,9 +61,10 @@ static weft_code draw_resting(weft_application *a, weft_error *error)
 static weft_code draw_frame(weft_application *a, weft_error *error)
 {
     double start = weft_now_s();
-    a->drew_hurried = !a->rests && weft_pace_hurries(&a->pace);
-    WEFT_TRY(a->rests ? draw_resting(a, error)
-                      : weft_player_draw_moving(a->player, &a->interaction.scene, &a->pace, &a->canvas, error));
+    a->drew_interactive = !a->converges && weft_pace_is_interactive(&a->pace);
+    WEFT_TRY(a->converges
+                 ? draw_converging(a, error)
+                 : weft_player_draw_interactive(a->player, &a->interaction.scene, &a->pace, &a->canvas, error));
     glFinish();
     a->drawn_ms = 1000 * (weft_now_s() - start);
     a->total_ms += a->drawn_ms;
@@ -76,7 +77,7 @@ void weft_application_note_time(weft_application *a, double shown_ms)
 {
     double whole_ms = a->drawn_ms + shown_ms;
     if (a->drawn_ms > 0 && a->frame_count > 1) {
-        weft_pace_note(&a->pace, a->drew_hurried, a->drawn_ms, shown_ms);
+        weft_pace_note(&a->pace, a->drew_interactive, a->drawn_ms, shown_ms);
         a->frame_ms = a->frame_ms > 0 ? 0.8 * a->frame_ms + 0.2 * whole_ms : whole_ms;
     }
     a->drawn_ms = 0;
@@ -90,7 +91,7 @@ static int still_frames(const weft_application *a)
 
 bool weft_application_is_finished(const weft_application *a)
 {
-    return a->rests && a->canvas.frame_count >= still_frames(a);
+    return a->converges && a->canvas.frame_count >= still_frames(a);
 }
 
 static void measure(weft_application *a)
@@ -98,9 +99,9 @@ static void measure(weft_application *a)
     weft_error error = {0};
     if (a->setup.measure(a->player, &a->interaction.scene, a->canvas.width, a->canvas.height, a->errors, &error) !=
         WEFT_OK)
-        weft_application_tell(a, true, error.message);
+        weft_application_show_message(a, true, error.message);
     if (weft_describe_unmeasured(a->setup.settings, a->player, &a->interaction.scene, a->unmeasured, &error) != WEFT_OK)
-        weft_application_tell(a, true, error.message);
+        weft_application_show_message(a, true, error.message);
 }
 
 /* When all is there that the command line named; later the user's is the exposure. */
@@ -124,7 +125,7 @@ static weft_code advance(weft_application *a, weft_error *error)
 {
     if (a->setup.frame_limit > 0 && weft_application_is_finished(a))
         weft_canvas_clear(&a->canvas);
-    if (weft_application_is_finished(a) || (!a->rests && a->canvas.frame_count > 0))
+    if (weft_application_is_finished(a) || (!a->converges && a->canvas.frame_count > 0))
         return WEFT_OK;
     WEFT_TRY(draw_frame(a, error));
     if (weft_application_is_finished(a))

@@ -10,8 +10,8 @@
 #include "player/window/application.h"
 #include "player/window/folder_files.h"
 #include "player/window/history.h"
+#include "player/window/idle.h"
 #include "player/window/interaction.h"
-#include "player/window/repose.h"
 #include "player/window/space_mouse.h"
 #include "player/window/watch.h"
 #include "player/window/weave_edit.h"
@@ -36,12 +36,12 @@ struct weft_application {
     double scale;              /* of text and widgets */
     weft_pace pace;            /* of moving frames */
     double frame_ms;           /* smoothed: from the scene to the screen, of all frames */
-    bool drew_hurried;         /* the last frame */
+    bool drew_interactive;     /* the last frame */
     double drawn_ms;           /* that the last frame took to draw; 0: none was drawn since the last one shown */
     double moved_s, stepped_s; /* when the picture changed last, and when the last frame began */
     double total_ms;
     long frame_count;
-    bool rests;            /* the mean of the frames so far is of a picture that no longer changes */
+    bool converges;        /* the mean of the frames so far is of a picture that no longer changes */
     weft_probe probe;      /* of the pixel of the mesh that the pointer was over last */
     weft_texel texel;      /* of it, where that is compressed */
     double reflectance[3]; /* BRDF x pi x cosine of the light, there, and half of the interval about it: */
@@ -63,11 +63,11 @@ struct weft_application {
     char note[WEFT_NOTE_SIZE];          /* told to the user */
     bool note_is_error;
     double note_ends_s;
-    weft_repose repose;
+    weft_idle idle;
 };
 
 /* Tells the user; `is_error` in red. */
-void weft_application_tell(weft_application *application, bool is_error, const char *text);
+void weft_application_show_message(weft_application *application, bool is_error, const char *text);
 
 /* ---- Frames ---- */
 

@@ -24,7 +24,7 @@ typedef struct weft_interaction {
     const char *wants_file;         /* to be opened, or NULL */
     const char *wants_mesh;         /* name of a built-in mesh, or NULL */
     const char *wants_surroundings; /* name of a built-in environment, "none", or NULL */
-    char said[96];                  /* what a key did, to be told; or "" */
+    char message[96];               /* what a key did, to be told; or "" */
 } weft_interaction;
 
 /* Button, press or release, and the GLFW modifiers held. */

@@ -19,9 +19,9 @@ static void say_missing(weft_interaction *i, weft_mode mode)
         "no cloth: drop a .wv or .mc, or give --weave",
     };
     if (i->is_reading)
-        snprintf(i->said, sizeof i->said, "%s: not read yet", weft_mode_name(mode));
+        snprintf(i->message, sizeof i->message, "%s: not read yet", weft_mode_name(mode));
     else
-        snprintf(i->said, sizeof i->said, "%s", missing[mode]);
+        snprintf(i->message, sizeof i->message, "%s", missing[mode]);
 }
 
 static void show(weft_interaction *i, double value)
@@ -32,7 +32,7 @@ static void show(weft_interaction *i, double value)
         return;
     }
     weft_interaction_show(i, mode);
-    snprintf(i->said, sizeof i->said, "%s", weft_mode_name(mode));
+    snprintf(i->message, sizeof i->message, "%s", weft_mode_name(mode));
 }
 
 static void flip(weft_interaction *i, double value)
@@ -41,11 +41,11 @@ static void flip(weft_interaction *i, double value)
     weft_interaction_flip(i);
     const char *first = weft_mode_name(i->scene.pane[0]), *second = weft_mode_name(i->scene.pane[1]);
     if (i->scene.layout == WEFT_LAYOUT_WIPE)
-        snprintf(i->said, sizeof i->said, "wipe: %s left, %s right", first, second);
+        snprintf(i->message, sizeof i->message, "wipe: %s left, %s right", first, second);
     else if (i->scene.layout == WEFT_LAYOUT_DIFFERENCE)
-        snprintf(i->said, sizeof i->said, "difference: %s minus %s", second, first);
+        snprintf(i->message, sizeof i->message, "difference: %s minus %s", second, first);
     else if (i->scene.pane_count == 1)
-        snprintf(i->said, sizeof i->said, "%s", first);
+        snprintf(i->message, sizeof i->message, "%s", first);
 }
 
 static void peek(weft_interaction *i, double value)
@@ -63,9 +63,9 @@ static void lay_out(weft_interaction *i, double value)
     static const char *const said[WEFT_LAYOUT_COUNT] = {"side by side", "wipe", "difference: second minus first"};
     weft_interaction_lay_out(i, layout);
     if (weft_scene_panes(&i->scene) > 1)
-        snprintf(i->said, sizeof i->said, "%s", said[layout]);
+        snprintf(i->message, sizeof i->message, "%s", said[layout]);
     else
-        snprintf(i->said, sizeof i->said, "nothing to compare with: drop another file of this cloth");
+        snprintf(i->message, sizeof i->message, "nothing to compare with: drop another file of this cloth");
 }
 
 /* ---- How it is shown ---- */
@@ -76,14 +76,14 @@ static void next_level_choice(weft_interaction *i, double value)
     static const char *const name[] = {"trilinear", "nearest", "none"};
     weft_scene *scene = &i->scene;
     scene->level_choice = scene->level_choice < WEFT_LEVEL_NONE ? scene->level_choice + 1 : WEFT_LEVEL_TRILINEAR;
-    snprintf(i->said, sizeof i->said, "mip levels: %s", name[scene->level_choice]);
+    snprintf(i->message, sizeof i->message, "mip levels: %s", name[scene->level_choice]);
     i->changed = true;
 }
 
 static void toggle(weft_interaction *i, bool *value, const char *name)
 {
     *value = !*value;
-    snprintf(i->said, sizeof i->said, "%s: %s", name, *value ? "on" : "off");
+    snprintf(i->message, sizeof i->message, "%s: %s", name, *value ? "on" : "off");
     i->changed = true;
 }
 
@@ -105,7 +105,7 @@ static void toggle_shadows(weft_interaction *i, double value)
     if (i->scene.light_count > 0)
         toggle(i, &i->scene.shadows, "shadows");
     else
-        snprintf(i->said, sizeof i->said, "no shadows without a key light");
+        snprintf(i->message, sizeof i->message, "no shadows without a key light");
 }
 
 static void toggle_relief(weft_interaction *i, double value)
@@ -114,14 +114,15 @@ static void toggle_relief(weft_interaction *i, double value)
     if (i->has_relief)
         toggle(i, &i->scene.relief, "through the heights");
     else
-        snprintf(i->said, sizeof i->said, "no heights: weft relief finds those of a dataset, weft compress keeps them");
+        snprintf(i->message, sizeof i->message,
+                 "no heights: weft relief finds those of a dataset, weft compress keeps them");
 }
 
 static void toggle_environment(weft_interaction *i, double value)
 {
     (void)value;
     if (!i->has_environment) {
-        snprintf(i->said, sizeof i->said, "no environment: drop an .exr or .hdr, or give --environment");
+        snprintf(i->message, sizeof i->message, "no environment: drop an .exr or .hdr, or give --environment");
         return;
     }
     toggle(i, &i->scene.environment, "environment");
@@ -131,7 +132,7 @@ static void toggle_environment(weft_interaction *i, double value)
 static void expose(weft_interaction *i, double factor)
 {
     i->scene.exposure *= factor;
-    snprintf(i->said, sizeof i->said, "exposure %.2f", i->scene.exposure);
+    snprintf(i->message, sizeof i->message, "exposure %.2f", i->scene.exposure);
     i->changed = true;
 }
 
@@ -157,14 +158,14 @@ static void hold_light(weft_interaction *i, double value)
 {
     (void)value;
     i->drag_moves_light = !i->drag_moves_light;
-    snprintf(i->said, sizeof i->said, "%s", i->drag_moves_light ? "the light moves" : "the cloth turns");
+    snprintf(i->message, sizeof i->message, "%s", i->drag_moves_light ? "the light moves" : "the cloth turns");
 }
 
 static void turn_by_itself(weft_interaction *i, double value)
 {
     (void)value;
     i->turns = !i->turns;
-    snprintf(i->said, sizeof i->said, "turn by itself: %s", i->turns ? "on" : "off");
+    snprintf(i->message, sizeof i->message, "turn by itself: %s", i->turns ? "on" : "off");
 }
 
 static void see_all(weft_interaction *i, double value)
@@ -172,7 +173,7 @@ static void see_all(weft_interaction *i, double value)
     (void)value;
     weft_orbit *orbit = &i->scene.orbit;
     *orbit = (weft_orbit){orbit->azimuth_rad, orbit->elevation_rad, weft_orbit_whole(), 0, 0};
-    snprintf(i->said, sizeof i->said, "all of it");
+    snprintf(i->message, sizeof i->message, "all of it");
     i->changed = true;
 }
 
@@ -180,7 +181,7 @@ static void look_from_start(weft_interaction *i, double value)
 {
     (void)value;
     i->scene.orbit = i->start.orbit;
-    snprintf(i->said, sizeof i->said, "camera as at the start");
+    snprintf(i->message, sizeof i->message, "camera as at the start");
     i->changed = true;
 }
 
@@ -195,7 +196,7 @@ static void light_from_start(weft_interaction *i, double value)
     scene->environment_strength = i->start.environment_strength;
     scene->exposure = i->start.exposure;
     weft_scene_keep_lit(scene);
-    snprintf(i->said, sizeof i->said, "lights and exposure as at the start");
+    snprintf(i->message, sizeof i->message, "lights and exposure as at the start");
     i->changed = true;
 }
 
@@ -203,7 +204,7 @@ static void choose_mesh(weft_interaction *i, double value)
 {
     static const char *const mesh[] = {"drape", "sphere", "plane"}, *const said[] = {"drape", "ball", "plane"};
     i->wants_mesh = mesh[(int)value];
-    snprintf(i->said, sizeof i->said, "%s", said[(int)value]);
+    snprintf(i->message, sizeof i->message, "%s", said[(int)value]);
 }
 
 /* ---- Files and window: switches of the interaction, which `offset` names ---- */

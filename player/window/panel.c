@@ -164,10 +164,10 @@ static void surroundings_row(weft_application *a)
     static const char *const name[] = {"Studio", "Overcast", "Sky", "Bare"};
     const char *shown = a->setup.settings->environment;
     int chosen = a->interaction.scene.environment ? -1 : 3;
-    for (int k = 0; chosen < 0 && shown && weft_surroundings_words[k]; k++)
-        chosen = strcmp(shown, weft_surroundings_words[k]) == 0 ? k : chosen;
+    for (int k = 0; chosen < 0 && shown && weft_surroundings_names[k]; k++)
+        chosen = strcmp(shown, weft_surroundings_names[k]) == 0 ? k : chosen;
     if (weft_ui_choice("Set", &chosen, name, NULL, 4))
-        a->interaction.wants_surroundings = chosen < 3 ? weft_surroundings_words[chosen] : "none";
+        a->interaction.wants_surroundings = chosen < 3 ? weft_surroundings_names[chosen] : "none";
 }
 
 static void environment_rows(weft_application *a)

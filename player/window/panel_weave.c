@@ -8,7 +8,7 @@
 static void tell(weft_application *a, weft_code code, const weft_error *error)
 {
     if (code != WEFT_OK)
-        weft_application_tell(a, true, error->message);
+        weft_application_show_message(a, true, error->message);
 }
 
 static bool range_row(weft_weave_edit *edit, const weft_weave_parameter_range *range)
@@ -100,7 +100,7 @@ static void save(weft_application *a)
         return;
     weft_application_open(a, path);
     snprintf(note, sizeof note, "saved %s", path);
-    weft_application_tell(a, false, note);
+    weft_application_show_message(a, false, note);
 }
 
 void weft_panel_follow_weave(weft_application *a)

@@ -68,12 +68,12 @@ static void the_parts_of_a_region_carry_its_power_in_equal_shares(void **state)
     for (int region = 0; region < WEFT_ENVIRONMENT_REGIONS; region++) {
         for (int c = 0; c < 3; c++) {
             double sum = 0, whole = (double)environment->region[region].irradiance[c];
-            for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
-                sum += (double)environment->part[part][region].irradiance[c] / WEFT_ENVIRONMENT_PARTS;
+            for (int part = 0; part < WEFT_ENVIRONMENT_STRATA; part++)
+                sum += (double)environment->stratum[part][region].irradiance[c] / WEFT_ENVIRONMENT_STRATA;
             assert_float_equal(sum, whole, 1e-4 * whole);
         }
-        for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++) {
-            const weft_distant_light *light = &environment->part[part][region], *all = &environment->region[region];
+        for (int part = 0; part < WEFT_ENVIRONMENT_STRATA; part++) {
+            const weft_distant_light *light = &environment->stratum[part][region], *all = &environment->region[region];
             double power = (double)(light->irradiance[0] + light->irradiance[1] + light->irradiance[2]);
             double mean = (double)(all->irradiance[0] + all->irradiance[1] + all->irradiance[2]);
             assert_float_equal(power, mean, 1e-3 * mean);
@@ -120,14 +120,14 @@ static double lean(const weft_environment *environment, int region, int first)
 {
     weft_vec3 of_first = weft_vec3_of(0, 0, 0), middle = weft_vec3_of(0, 0, 0);
     double spread = 0;
-    for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++) {
-        weft_vec3 at = environment->part[part][region].direction;
-        middle = weft_add(middle, weft_scale(at, 1.0 / WEFT_ENVIRONMENT_PARTS));
+    for (int part = 0; part < WEFT_ENVIRONMENT_STRATA; part++) {
+        weft_vec3 at = environment->stratum[part][region].direction;
+        middle = weft_add(middle, weft_scale(at, 1.0 / WEFT_ENVIRONMENT_STRATA));
         of_first = weft_add(of_first, weft_scale(at, part < first ? 1.0 / first : 0));
     }
-    for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
-        spread += (double)weft_length(weft_subtract(environment->part[part][region].direction, middle));
-    return (double)weft_length(weft_subtract(of_first, middle)) * WEFT_ENVIRONMENT_PARTS / spread;
+    for (int part = 0; part < WEFT_ENVIRONMENT_STRATA; part++)
+        spread += (double)weft_length(weft_subtract(environment->stratum[part][region].direction, middle));
+    return (double)weft_length(weft_subtract(of_first, middle)) * WEFT_ENVIRONMENT_STRATA / spread;
 }
 
 /* Highlights and shadows would wander while a picture comes to rest. */
@@ -158,12 +158,12 @@ static void the_shadows_of_a_frame_come_from_elsewhere_than_those_before(void **
     for (int frame = 1; frame <= FRAMES; frame++) {
         weft_lighting before = weft_lighting_of(&scene, environment, frame - 1),
                       now = weft_lighting_of(&scene, environment, frame);
-        assert_int_equal(now.fill_count, WEFT_FILL_DIRECTIONS);
-        for (int i = 0; i < now.fill_count; i++)
-            stays += weft_dot(before.fill[i], now.fill[i]) > cos(weft_rad_of_deg(3));
+        assert_int_equal(now.sample_count, WEFT_ENVIRONMENT_SAMPLES);
+        for (int i = 0; i < now.sample_count; i++)
+            stays += weft_dot(before.sample[i], now.sample[i]) > cos(weft_rad_of_deg(3));
     }
-    printf("%d of %d directions stay where they are\n", stays, FRAMES * WEFT_FILL_DIRECTIONS);
-    assert_true(stays < FRAMES * WEFT_FILL_DIRECTIONS / 4);
+    printf("%d of %d directions stay where they are\n", stays, FRAMES * WEFT_ENVIRONMENT_SAMPLES);
+    assert_true(stays < FRAMES * WEFT_ENVIRONMENT_SAMPLES / 4);
     free(environment);
 }
 
@@ -171,15 +171,15 @@ static void the_shadows_of_a_frame_come_from_elsewhere_than_those_before(void **
  */
 static double gap_deg(const weft_environment *environment, int frames)
 {
-    enum { MOST = 16 * WEFT_FILL_DIRECTIONS };
+    enum { MOST = 16 * WEFT_ENVIRONMENT_SAMPLES };
     weft_vec3 at[MOST];
     weft_scene scene = weft_scene_default();
-    int count = frames * WEFT_FILL_DIRECTIONS;
+    int count = frames * WEFT_ENVIRONMENT_SAMPLES;
     double sum = 0;
     scene.environment = true;
     for (int frame = 0; frame < frames; frame++) {
         weft_lighting now = weft_lighting_of(&scene, environment, frame);
-        memcpy(at + frame * WEFT_FILL_DIRECTIONS, now.fill, sizeof now.fill);
+        memcpy(at + frame * WEFT_ENVIRONMENT_SAMPLES, now.sample, sizeof now.sample);
     }
     for (int i = 0; i < count; i++) {
         double nearest = -1;
@@ -203,7 +203,7 @@ static void the_shadows_of_sixteen_frames_leave_no_gap(void **state)
 
 static weft_vec3 light_of_kind(const weft_lighting *l, int region, int kind)
 {
-    const float *d = l->direction[l->scene_count + region * l->set_count + kind];
+    const float *d = l->direction[l->scene_count + region * l->interleave_count + kind];
     return weft_vec3_of((weft_real)d[0], (weft_real)d[1], (weft_real)d[2]);
 }
 
@@ -211,8 +211,8 @@ static weft_vec3 light_of_kind(const weft_lighting *l, int region, int kind)
 static double off_centre(const weft_environment *environment, int region, weft_vec3 mean)
 {
     weft_vec3 all = weft_vec3_of(0, 0, 0);
-    for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
-        all = weft_add(all, weft_scale(environment->part[part][region].direction, 1.0 / WEFT_ENVIRONMENT_PARTS));
+    for (int part = 0; part < WEFT_ENVIRONMENT_STRATA; part++)
+        all = weft_add(all, weft_scale(environment->stratum[part][region].direction, 1.0 / WEFT_ENVIRONMENT_STRATA));
     return (double)weft_length(weft_subtract(mean, all));
 }
 
@@ -227,8 +227,8 @@ static double off_after(const weft_environment *environment, int frames, int kin
         int count = 0;
         for (int frame = 0; frame < frames; frame++) {
             weft_lighting l = weft_lighting_of(&scene, environment, frame);
-            assert_int_equal(l.set_count, WEFT_LIGHT_SETS);
-            for (int k = 0; k < l.set_count; k++) {
+            assert_int_equal(l.interleave_count, WEFT_INTERLEAVED_LIGHTS);
+            for (int k = 0; k < l.interleave_count; k++) {
                 if (kind < 0 || k == kind) {
                     sum = weft_add(sum, light_of_kind(&l, region, k));
                     count++;
@@ -246,8 +246,8 @@ static void neighbouring_pixels_complete_each_other(void **state)
     (void)state;
     weft_environment *environment = studio();
     assert_true(off_after(environment, 16, -1) < 1e-5);
-    for (int kind = 0; kind < WEFT_LIGHT_SETS; kind++) {
-        assert_true(off_after(environment, WEFT_ENVIRONMENT_PARTS, kind) < 1e-5);
+    for (int kind = 0; kind < WEFT_INTERLEAVED_LIGHTS; kind++) {
+        assert_true(off_after(environment, WEFT_ENVIRONMENT_STRATA, kind) < 1e-5);
         assert_true(off_after(environment, 16, kind) > 1e-4);
     }
     /* In one frame already. */
@@ -263,9 +263,9 @@ static void a_tinted_light_is_that_of_its_neighbours(void **state)
     weft_environment *environment = studio();
     weft_scene scene = weft_scene_default();
     scene.environment = scene.show_extrapolation = true;
-    assert_int_equal(weft_lighting_of(&scene, environment, 3).set_count, 1);
+    assert_int_equal(weft_lighting_of(&scene, environment, 3).interleave_count, 1);
     scene.show_extrapolation = false;
-    assert_int_equal(weft_lighting_of(&scene, environment, -1).set_count, 1);
+    assert_int_equal(weft_lighting_of(&scene, environment, -1).interleave_count, 1);
     free(environment);
 }
 
@@ -314,8 +314,8 @@ static void maps_of_two_pixels_and_of_enormous_values_give_finite_lights(void **
         weft_environment *environment = environment_of(&image);
         for (int region = 0; region < WEFT_ENVIRONMENT_REGIONS; region++) {
             expect_finite(&environment->region[region]);
-            for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
-                expect_finite(&environment->part[part][region]);
+            for (int part = 0; part < WEFT_ENVIRONMENT_STRATA; part++)
+                expect_finite(&environment->stratum[part][region]);
         }
         free(environment);
     }

@@ -58,7 +58,7 @@ static weft_image at_rest(weft_player *player, const weft_scene *scene, int fram
     expect_ok(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
     for (int i = 0; i < frames; i++) {
         weft_canvas_begin_frame(&canvas);
-        expect_ok(weft_player_draw(player, scene, WIDTH, HEIGHT, weft_sampling_at_rest(i), &error), &error);
+        expect_ok(weft_player_draw(player, scene, WIDTH, HEIGHT, weft_sampling_converging(i), &error), &error);
         weft_canvas_end_frame(&canvas);
     }
     expect_ok(weft_canvas_read(&canvas, &image, &error), &error);

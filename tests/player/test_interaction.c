@@ -263,9 +263,9 @@ static void a_key_that_can_do_nothing_says_what_is_missing(void **state)
     (void)state;
     weft_interaction i = fresh();
     weft_keys_press(&i, GLFW_KEY_3, 0, false);
-    assert_non_null(strstr(i.said, "--weave"));
+    assert_non_null(strstr(i.message, "--weave"));
     weft_keys_press(&i, GLFW_KEY_E, 0, false);
-    assert_non_null(strstr(i.said, "--environment"));
+    assert_non_null(strstr(i.message, "--environment"));
     assert_false(i.scene.environment);
     assert_false(i.changed);
 }
@@ -291,9 +291,9 @@ static void a_key_that_changes_what_is_seen_says_so(void **state)
     (void)state;
     weft_interaction i = fresh();
     for (size_t k = 0; k < sizeof press / sizeof *press; k++) {
-        i.said[0] = 0;
+        i.message[0] = 0;
         weft_keys_press(&i, press[k].code, 0, false);
-        assert_string_equal(i.said, press[k].said);
+        assert_string_equal(i.message, press[k].said);
     }
 }
 

@@ -35,7 +35,7 @@ static weft_image moving(void **state, const weft_scene *scene, const weft_pace 
     stage *s = *state;
     weft_error error = {0};
     weft_image image;
-    expect_ok(weft_player_draw_moving(s->player, scene, pace, canvas, &error), &error);
+    expect_ok(weft_player_draw_interactive(s->player, scene, pace, canvas, &error), &error);
     expect_ok(weft_canvas_read(canvas, &image, &error), &error);
     return image;
 }

@@ -29,27 +29,27 @@ static int play(machine *m, weft_pace *pace, int frames)
     int changes = 0;
     for (int i = 0; i < frames; i++) {
         double side = weft_pace_side(pace);
-        weft_pace_note(pace, weft_pace_hurries(pace), drawn_ms(m, side), m->shown_ms);
+        weft_pace_note(pace, weft_pace_is_interactive(pace), drawn_ms(m, side), m->shown_ms);
         changes += weft_pace_side(pace) != side;
     }
     return changes;
 }
 
-static void a_fast_machine_draws_every_pixel_and_does_not_hurry(void **state)
+static void a_fast_machine_draws_every_pixel_exactly(void **state)
 {
     (void)state;
     weft_pace pace = {0};
     assert_int_equal(play(&(machine){.pixels_ms = 12, .shown_ms = 2}, &pace, 100), 0);
-    assert_false(weft_pace_hurries(&pace));
+    assert_false(weft_pace_is_interactive(&pace));
     assert_true(weft_pace_side(&pace) == 1);
 }
 
-static void a_machine_that_hurries_in_time_draws_every_pixel(void **state)
+static void a_machine_whose_interactive_frames_are_in_time_draws_every_pixel(void **state)
 {
     (void)state;
     weft_pace pace = {0};
     assert_int_equal(play(&(machine){.pixels_ms = 25, .shown_ms = 5}, &pace, 100), 0);
-    assert_true(weft_pace_hurries(&pace));
+    assert_true(weft_pace_is_interactive(&pace));
     assert_true(weft_pace_side(&pace) == 1);
 }
 
@@ -88,18 +88,18 @@ static void one_hiccup_changes_nothing_and_two_slow_frames_do(void **state)
     assert_float_equal(weft_pace_side(&pace), 5.0 / 6, 1e-12);
 }
 
-static void one_hiccup_of_an_exact_frame_makes_nothing_hurry(void **state)
+static void one_hiccup_of_an_exact_frame_changes_nothing(void **state)
 {
     (void)state;
     weft_pace pace = {0};
     play(&(machine){.pixels_ms = 5}, &pace, 20);
     weft_pace_note(&pace, false, 900, 5);
-    assert_false(weft_pace_hurries(&pace));
+    assert_false(weft_pace_is_interactive(&pace));
     play(&(machine){.pixels_ms = 5}, &pace, 1);
-    assert_false(weft_pace_hurries(&pace));
+    assert_false(weft_pace_is_interactive(&pace));
     /* What goes on does. */
     play(&(machine){.pixels_ms = 60}, &pace, 3);
-    assert_true(weft_pace_hurries(&pace));
+    assert_true(weft_pace_is_interactive(&pace));
 }
 
 static void what_became_faster_gets_its_pixels_back(void **state)
@@ -149,9 +149,9 @@ static void absurd_times_do_no_harm(void **state)
     play(&(machine){.pixels_ms = 60}, &pace, 20);
     const weft_pace before = pace;
     for (size_t i = 0; i < sizeof absurd / sizeof *absurd; i++) {
-        for (int hurried = 0; hurried < 2; hurried++) {
-            weft_pace_note(&pace, hurried, absurd[i], 1);
-            weft_pace_note(&pace, hurried, 1, absurd[i]);
+        for (int interactive = 0; interactive < 2; interactive++) {
+            weft_pace_note(&pace, interactive, absurd[i], 1);
+            weft_pace_note(&pace, interactive, 1, absurd[i]);
         }
     }
     assert_memory_equal(&pace, &before, sizeof pace);
@@ -166,11 +166,11 @@ static void absurd_times_do_no_harm(void **state)
 int test_pace(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_fast_machine_draws_every_pixel_and_does_not_hurry),
-        cmocka_unit_test(a_machine_that_hurries_in_time_draws_every_pixel),
+        cmocka_unit_test(a_fast_machine_draws_every_pixel_exactly),
+        cmocka_unit_test(a_machine_whose_interactive_frames_are_in_time_draws_every_pixel),
         cmocka_unit_test(a_slow_machine_keeps_the_promise_after_a_few_frames_and_does_not_pump),
         cmocka_unit_test(one_hiccup_changes_nothing_and_two_slow_frames_do),
-        cmocka_unit_test(one_hiccup_of_an_exact_frame_makes_nothing_hurry),
+        cmocka_unit_test(one_hiccup_of_an_exact_frame_changes_nothing),
         cmocka_unit_test(what_became_faster_gets_its_pixels_back),
         cmocka_unit_test(a_panel_that_takes_long_leaves_less_for_the_picture),
         cmocka_unit_test(frames_at_rest_are_whole_and_say_nothing_of_moving_ones),

@@ -419,7 +419,7 @@ static void the_window_shows_differences_as_saved_pictures_do(void **state)
     weft_canvas_free(&canvas);
 }
 
-static weft_image frame_of_components(void **state, int components, bool hurry)
+static weft_image frame_of_components(void **state, int components, bool interactive)
 {
     stage *s = *state;
     weft_error error = {0};
@@ -427,10 +427,10 @@ static weft_image frame_of_components(void **state, int components, bool hurry)
     weft_canvas canvas;
     weft_image image;
     scene.components = components;
-    scene.filter = hurry ? WEFT_FILTER_AUTO : WEFT_FILTER_STOCHASTIC;
+    scene.filter = interactive ? WEFT_FILTER_AUTO : WEFT_FILTER_STOCHASTIC;
     expect_ok(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
     weft_canvas_begin_frame(&canvas);
-    weft_sampling sampling = {.frame = 3, .hurry = hurry};
+    weft_sampling sampling = {.frame = 3, .interactive = interactive};
     expect_ok(weft_player_draw(s->player, &scene, WIDTH, HEIGHT, sampling, &error), &error);
     weft_canvas_end_frame(&canvas);
     expect_ok(weft_canvas_read(&canvas, &image, &error), &error);
@@ -438,7 +438,7 @@ static weft_image frame_of_components(void **state, int components, bool hurry)
     return image;
 }
 
-static void a_frame_in_a_hurry_has_the_first_sixteen_components(void **state)
+static void an_interactive_frame_has_the_first_sixteen_components(void **state)
 {
     stage *s = *state;
     weft_error error = {0};
@@ -448,12 +448,12 @@ static void a_frame_in_a_hurry_has_the_first_sixteen_components(void **state)
     stage_components(WEFT_COMPONENTS_OF_LIGHT, 32, &material);
     expect_ok(weft_player_set_material(s->player, &material, &error), &error);
     weft_material_free(&material);
-    weft_image hurried = frame_of_components(state, 64, true), first = frame_of_components(state, 16, false),
+    weft_image interactive = frame_of_components(state, 64, true), first = frame_of_components(state, 16, false),
                all = frame_of_components(state, 64, false), few = frame_of_components(state, 8, true);
-    assert_memory_equal(hurried.pixels, first.pixels, size);
-    assert_memory_not_equal(hurried.pixels, all.pixels, size);
-    assert_memory_not_equal(hurried.pixels, few.pixels, size);
-    weft_image *const image[] = {&hurried, &first, &all, &few};
+    assert_memory_equal(interactive.pixels, first.pixels, size);
+    assert_memory_not_equal(interactive.pixels, all.pixels, size);
+    assert_memory_not_equal(interactive.pixels, few.pixels, size);
+    weft_image *const image[] = {&interactive, &first, &all, &few};
     for (int i = 0; i < 4; i++)
         weft_image_free(image[i]);
 }
@@ -494,7 +494,7 @@ int test_picture(void)
         cmocka_unit_test(differences_are_told_by_hue_and_darkness),
         cmocka_unit_test(false_colours_are_those_of_their_legends),
         cmocka_unit_test(the_window_shows_differences_as_saved_pictures_do),
-        cmocka_unit_test(a_frame_in_a_hurry_has_the_first_sixteen_components),
+        cmocka_unit_test(an_interactive_frame_has_the_first_sixteen_components),
     };
     return cmocka_run_group_tests(tests, open_with_models, stage_close);
 }

@@ -8,8 +8,8 @@ uniform vec3 backdrop;          // radiance as shown
 uniform vec3 ground_centre;     // below the mesh
 uniform float ground_size;      // radius of the mesh
 uniform vec3 ground_light[2];   // irradiance of the key light, and of all other light
-// Of each, what the mesh hides (player/draw/ground_shadow.h).
-uniform sampler2D key_hidden, fill_hidden;
+// Of each, what the mesh hides (player/draw/ground.c).
+uniform sampler2D key_hidden, environment_hidden;
 uniform float hidden_side[2];  // half of that of their squares
 uniform float hidden_share[2]; // what one of their directions counts
 out vec4 colour;
@@ -29,7 +29,7 @@ float seen_share(sampler2D hidden, vec2 at, float share)
 vec3 unshaded(vec2 from_centre)
 {
     vec3 key = ground_light[0] * seen_share(key_hidden, from_centre / hidden_side[0], hidden_share[0]);
-    vec3 fill = ground_light[1] * seen_share(fill_hidden, from_centre / hidden_side[1], hidden_share[1]);
+    vec3 fill = ground_light[1] * seen_share(environment_hidden, from_centre / hidden_side[1], hidden_share[1]);
     return (key + fill) / max(ground_light[0] + ground_light[1], vec3(1e-6));
 }
 

@@ -13,13 +13,13 @@ uniform mat4 shadow_of_world[SHADOW_LAYERS];
 uniform highp sampler2DArrayShadow shadow_map; // of places in the first light, then of directions of the environment
 uniform float shadow_texel;                    // of the map, in the world, where a layer uses all of it
 uniform float shadow_share[SHADOW_LAYERS];     // of its side that a layer uses
-uniform vec3 fill_direction[SHADOW_LAYERS - KEY_PLACES];
+uniform vec3 sample_direction[SHADOW_LAYERS - KEY_PLACES];
 uniform int shadow_taps; // 1 or 4
 uniform int key_count;   // places in the first light from which shadows fall: 0, 1 or KEY_PLACES
-uniform int scene_count; // the first of them; the others are the environment
-uniform int set_count;   // of which each kind of pixels has others
-uniform int fill_count;  // 0: the environment casts no shadows
-uniform float fill_least; // share of the environment that is seen from anywhere
+uniform int scene_count; // lights of the scene; the lights after them are the environment
+uniform int interleave_count; // sets of environment lights, one for each index of a pixel
+uniform int sample_count; // directions of the environment; 0: it casts no shadows
+uniform float least_visibility; // of the environment, anywhere
 uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
@@ -38,7 +38,7 @@ struct SurfacePoint {
     float key_share; // of the first light that is not in shadow
     float env_share; // of the environment's light, about
     float chance;    // in [0, 1)
-    int kind;        // of pixel: which set of the environment's lights it is lit by
+    int interleave;  // index of the pixel: which lights of the environment it gets
     ivec2 chosen;       // where CHOSEN_LIGHTS: lights of the environment,
     vec2 chosen_weight; // and what each of them counts
 };
@@ -80,7 +80,7 @@ SurfacePoint plotted_point()
     point.sides = vec4(0.0);
     point.key_share = point.env_share = 1.0;
     point.chance = 0.0;
-    point.kind = 0;
+    point.interleave = 0;
     return point;
 }
 
@@ -128,16 +128,16 @@ float key_share_of(vec3 position, vec3 normal)
     return key_count > 0 ? seen / float(key_count) : 1.0;
 }
 
-// What is seen of a few directions of the environment, those counting more that the surface faces.
-float fill_share(vec3 position, vec3 normal)
+// Visibility of a few directions of the environment, weighted by the cosine.
+float environment_visibility(vec3 position, vec3 normal)
 {
     float seen = 1e-3, all_of_it = 1e-3;
-    for (int i = 0; i < fill_count; i++) {
-        float cosine = max(dot(fill_direction[i], normal), 0.0);
+    for (int i = 0; i < sample_count; i++) {
+        float cosine = max(dot(sample_direction[i], normal), 0.0);
         all_of_it += cosine;
         seen += cosine * unshadowed_share(position, normal, KEY_PLACES + i, 1);
     }
-    return max(seen / all_of_it, fill_least);
+    return max(seen / all_of_it, least_visibility);
 }
 
 void find_shadows(vec3 position, inout SurfacePoint point)
@@ -146,7 +146,7 @@ void find_shadows(vec3 position, inout SurfacePoint point)
     if (!SHADOWS)
         return;
     point.key_share = key_share_of(position, point.axes[2]);
-    point.env_share = fill_share(position, point.axes[2]);
+    point.env_share = environment_visibility(position, point.axes[2]);
 }
 
 // About what a light of the environment brings to a surface. Grazing light counts for more than its cosine: it is what
@@ -190,13 +190,13 @@ uint random_bits(uvec2 place)
     return (bits ^ bits >> 15) * 0x2C1B3C6Du;
 }
 
-// Of 4 x 2 kinds, each next to the one that it completes most (player/draw/lighting.h). They change places from block to
-// block, all at once, so that each block has all of them: the same order everywhere would be a hatch.
-int pixel_kind()
+// Index 0 to 7 of a pixel in its block of 4 x 2. Each is next to the one that it completes most (player/draw/lighting.h).
+// From block to block the indices are exchanged, all at once: a fixed order would be a visible hatch.
+int interleave_index()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    int kind = (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
-    return kind ^ int(random_bits(uvec2(pixel >> ivec2(2, 1))) >> 29);
+    int index = (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
+    return index ^ int(random_bits(uvec2(pixel >> ivec2(2, 1))) >> 29);
 }
 
 SurfacePoint surface_point()
@@ -216,7 +216,7 @@ SurfacePoint surface_point()
     point.sides = textureLod(surface_sides, pixel, 0.0);
     find_shadows(eye + abs(place.w) * ray, point);
     point.chance = STOCHASTIC ? pixel_chance() : 0.0;
-    point.kind = set_count > 1 ? pixel_kind() % set_count : 0;
+    point.interleave = interleave_count > 1 ? interleave_index() % interleave_count : 0;
     if (CHOSEN_LIGHTS > 0)
         choose_lights(point);
     return point;
@@ -227,7 +227,7 @@ int light_at(SurfacePoint point, int i)
 {
     if (CHOSEN_LIGHTS > 0)
         return i < scene_count ? i : i == scene_count ? point.chosen.x : point.chosen.y;
-    return i < scene_count ? i : scene_count + (i - scene_count) * set_count + point.kind;
+    return i < scene_count ? i : scene_count + (i - scene_count) * interleave_count + point.interleave;
 }
 
 float weight_at(SurfacePoint point, int i)

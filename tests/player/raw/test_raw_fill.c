@@ -106,7 +106,7 @@ static void a_view_without_valid_samples_is_in_no_triangle(void **state)
     weft_dataset *dataset = make_dataset(mask);
     assert_int_equal(weft_raw_images_find(dataset, &images, &error), WEFT_OK);
     assert_int_equal(weft_raw_images_map(&images, weft_dataset_get_layout(dataset), &map, &error), WEFT_OK);
-    assert_int_equal(map.set_count, 2);
+    assert_int_equal(map.interleave_count, 2);
     assert_float_equal(map.simplex[0].form[0][3], 1, 0);
     weft_direction_map_free(&map);
     weft_raw_images_free(&images);

@@ -17,9 +17,9 @@ static void cloth_stands_on_a_ground_that_takes_its_shadow(void **state)
     weft_error error = {0};
     weft_surface_sample *at;
     float *share = malloc(PIXELS * sizeof *share);
-    for (int i = 0; weft_surroundings_words[i]; i++) {
+    for (int i = 0; weft_surroundings_names[i]; i++) {
         studio_show(s->player, "drape");
-        weft_scene scene = studio_scene(s->player, weft_surroundings_words[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
+        weft_scene scene = studio_scene(s->player, weft_surroundings_names[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
         weft_image image = studio_picture(s->player, &scene);
         expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error),
                   &error);
@@ -37,7 +37,7 @@ static void cloth_stands_on_a_ground_that_takes_its_shadow(void **state)
         float deepest = weft_quantile_of_floats(share, count, 0.002f),
               usual = weft_quantile_of_floats(share, count, 0.8f);
         print_message("%s: %.3f of the light in the deepest shadow on the ground, %.3f far from it\n",
-                      weft_surroundings_words[i], (double)deepest, (double)usual);
+                      weft_surroundings_names[i], (double)deepest, (double)usual);
         assert_true(deepest < 0.8 && deepest > 0.02 && usual > 0.98 && usual <= 1.0001f);
         free(at);
         weft_image_free(&image);
@@ -57,9 +57,9 @@ static void the_light_of_the_ground_comes_as_often_as_it_is_bright_there(void **
     weft_scene scene = studio_scene(s->player, "studio", WEFT_ENVIRONMENT_SMOOTH_REGIONS);
     expect_ok(weft_environment_of_image(&map, WEFT_ENVIRONMENT_SMOOTH_REGIONS, environment, &error), &error);
     double wanted[3] = {0}, found[3] = {0}, all = 0;
-    for (int i = 0; i < WEFT_ENVIRONMENT_PARTS * environment->region_count; i++) {
+    for (int i = 0; i < WEFT_ENVIRONMENT_STRATA * environment->region_count; i++) {
         const weft_distant_light *light =
-            &environment->part[i / environment->region_count][i % environment->region_count];
+            &environment->stratum[i / environment->region_count][i % environment->region_count];
         double weight = fmax((double)light->direction.z, 0) *
                         (double)(light->irradiance[0] + light->irradiance[1] + light->irradiance[2]);
         wanted[0] += weight * (double)light->direction.x;

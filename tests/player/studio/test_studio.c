@@ -193,8 +193,9 @@ static void folds_are_not_black_in_the_frames_that_stand_alone(void **state)
     studio_show(s->player, "drape");
     weft_scene scene = studio_scene(s->player, "studio", WEFT_ENVIRONMENT_SMOOTH_REGIONS);
     scene.light_count = 0;
-    weft_image moving = frame_of(s->player, &scene, (weft_sampling){.frame = -1, .hurry = true}),
-               first = frame_of(s->player, &scene, weft_sampling_at_rest(0)), whole = studio_picture(s->player, &scene);
+    weft_image moving = frame_of(s->player, &scene, (weft_sampling){.frame = -1, .interactive = true}),
+               first = frame_of(s->player, &scene, weft_sampling_converging(0)),
+               whole = studio_picture(s->player, &scene);
     double of_moving = dark_on_screen(s->player, &scene, &moving), of_first = dark_on_screen(s->player, &scene, &first),
            of_whole = dark_on_screen(s->player, &scene, &whole);
     print_message("the darkest hundredth: %.0f moving, %.0f of the first frame, %.0f of the whole picture\n", of_moving,
@@ -208,9 +209,9 @@ static void unlit_folds_are_not_black_and_lit_ones_not_white(void **state)
     stage *s = *state;
     weft_error error = {0};
     weft_surface_sample *at;
-    for (int i = 0; weft_surroundings_words[i]; i++) {
+    for (int i = 0; weft_surroundings_names[i]; i++) {
         studio_show(s->player, "drape");
-        weft_scene scene = studio_scene(s->player, weft_surroundings_words[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
+        weft_scene scene = studio_scene(s->player, weft_surroundings_names[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
         scene.tone = WEFT_TONE_SOFT;
         weft_image image = studio_picture(s->player, &scene);
         expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error),
@@ -223,7 +224,7 @@ static void unlit_folds_are_not_black_and_lit_ones_not_white(void **state)
                 brightest = fmaxf(brightest, image.pixels[3 * k + c]);
             }
         }
-        print_message("%s: from %.0f to %.0f of 255\n", weft_surroundings_words[i], 255 * (double)darkest,
+        print_message("%s: from %.0f to %.0f of 255\n", weft_surroundings_names[i], 255 * (double)darkest,
                       255 * (double)brightest);
         assert_true(darkest > 12.0f / 255 && brightest < 250.0f / 255);
         free(at);

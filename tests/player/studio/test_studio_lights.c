@@ -75,10 +75,10 @@ static void the_fill_comes_from_where_the_environment_is_bright(void **state)
     double left = 0, all = 0;
     for (int i = 0; i < FRAMES; i++) {
         weft_lighting lighting = weft_lighting_of(&scene, environment, i);
-        assert_int_equal(lighting.fill_count, WEFT_FILL_DIRECTIONS);
-        for (int k = 0; k < lighting.fill_count; k++, all++) {
-            assert_true(lighting.fill[k].z > 0);
-            left += lighting.fill[k].x < 0;
+        assert_int_equal(lighting.sample_count, WEFT_ENVIRONMENT_SAMPLES);
+        for (int k = 0; k < lighting.sample_count; k++, all++) {
+            assert_true(lighting.sample[k].z > 0);
+            left += lighting.sample[k].x < 0;
         }
     }
     assert_float_equal(left / all, 0.75, 0.08);

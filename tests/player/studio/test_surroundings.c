@@ -57,10 +57,10 @@ static void only_the_overcast_sky_has_no_key_light(void **state)
     (void)state;
     weft_error error = {0};
     weft_image map;
-    for (int i = 0; weft_surroundings_words[i]; i++) {
+    for (int i = 0; weft_surroundings_names[i]; i++) {
         weft_scene scene = weft_scene_default();
-        weft_surroundings_light(weft_surroundings_words[i], &scene);
-        assert_true(scene.environment && weft_surroundings_are(weft_surroundings_words[i]));
+        weft_surroundings_light(weft_surroundings_names[i], &scene);
+        assert_true(scene.environment && weft_surroundings_are(weft_surroundings_names[i]));
         assert_int_equal(scene.light_count, i == 1 ? 0 : 1);
     }
     assert_false(weft_surroundings_are("studio.hdr"));

@@ -10,6 +10,6 @@
 bool weft_draws_whole_material(const weft_scene *scene, int components, bool has_heights);
 
 /* "error on directions that were not fitted: compressed 20.2 %, the photographs interpolated 33.6 %". */
-void weft_held_out_words(const weft_hold_out *held_out, char line[WEFT_HOLD_OUT_LINE]);
+void weft_held_out_message(const weft_hold_out *held_out, char line[WEFT_HOLD_OUT_LINE]);
 
 #endif

@@ -1,4 +1,4 @@
-#include "player/window/held_out_words.h"
+#include "player/window/held_out_message.h"
 
 #include <stdio.h>
 
@@ -14,7 +14,7 @@ bool weft_draws_whole_material(const weft_scene *scene, int components, bool has
     return is_whole;
 }
 
-void weft_held_out_words(const weft_hold_out *h, char line[WEFT_HOLD_OUT_LINE])
+void weft_held_out_message(const weft_hold_out *h, char line[WEFT_HOLD_OUT_LINE])
 {
     int used = snprintf(line, WEFT_HOLD_OUT_LINE, "error %s: compressed %.1f %%", weft_hold_out_about(h),
                         100 * h->material.all.relative_rmse);

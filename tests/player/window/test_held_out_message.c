@@ -1,5 +1,5 @@
 /* What the window says of the error of a material, and of which pictures of it that is true. */
-#include "player/window/held_out_words.h"
+#include "player/window/held_out_message.h"
 #include "tests/support/expect_ok.h"
 
 static weft_hold_out measured(weft_split_kind kind)
@@ -14,7 +14,7 @@ static weft_hold_out measured(weft_split_kind kind)
 static void expect_words(const weft_hold_out *held_out, const char *words)
 {
     char line[WEFT_HOLD_OUT_LINE];
-    weft_held_out_words(held_out, line);
+    weft_held_out_message(held_out, line);
     assert_string_equal(line, words);
 }
 
@@ -71,7 +71,7 @@ static void heights_that_are_left_out_are_not_what_was_measured(void **state)
     assert_true(weft_draws_whole_material(&scene, 32, false));
 }
 
-int test_held_out_words(void)
+int test_held_out_message(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_line_names_what_was_not_fitted),
