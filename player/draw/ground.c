@@ -148,8 +148,9 @@ static weft_code follow(weft_player *p, weft_ground_shadow *shadow, const double
 {
     if (shadow->count > 0 && is_same_light(shadow->light, light) && shadow->whole >= directions_at(detail))
         return WEFT_OK;
+    WEFT_TRY(clear_sum(shadow, ground_below(p), reach, detail, error));
     memcpy(shadow->light, light, sizeof shadow->light);
-    return clear_sum(shadow, ground_below(p), reach, detail, error);
+    return WEFT_OK;
 }
 
 static weft_code follow_light(weft_player *p, const weft_scene *scene, int part, double detail, weft_error *error)
