@@ -3,7 +3,6 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -21,12 +20,6 @@ static void written(void *context, fake_hid *hid, const unsigned char *bytes, si
     fake_stage_ask(&controller->stage, bytes + 1, &answers);
     for (int i = 0; i < answers.count; i++)
         fake_hid_push(hid, answers.report[i], WEFT_REPORT_SIZE);
-}
-
-static void rest(void)
-{
-    const struct timespec pause = {0, 1000000};
-    nanosleep(&pause, NULL);
 }
 
 /* Numbers are never used twice: other nodes may still be open. */
@@ -51,17 +44,20 @@ static void pull(fake_controller *c, fake_fault kind)
 static void *watch(void *argument)
 {
     fake_controller *c = argument;
-    for (;;) {
-        pthread_mutex_lock(&c->stage.mutex);
-        bool wanted = c->stage.unplug_wanted, ending = c->ending;
+    pthread_mutex_lock(&c->stage.mutex);
+    while (!c->ending) {
+        if (!c->stage.unplug_wanted) {
+            pthread_cond_wait(&c->stage.changed, &c->stage.mutex);
+            continue;
+        }
         c->stage.unplug_wanted = false;
         pthread_mutex_unlock(&c->stage.mutex);
-        if (ending)
-            return NULL;
-        if (wanted && c->hid)
+        if (c->hid)
             pull(c, c->stage.unplug_kind);
-        rest();
+        pthread_mutex_lock(&c->stage.mutex);
     }
+    pthread_mutex_unlock(&c->stage.mutex);
+    return NULL;
 }
 
 void fake_controller_start(fake_controller *c, UMockdevTestbed *testbed)
@@ -85,6 +81,7 @@ void fake_controller_end(fake_controller *c)
 {
     pthread_mutex_lock(&c->stage.mutex);
     c->ending = true;
+    pthread_cond_broadcast(&c->stage.changed);
     pthread_mutex_unlock(&c->stage.mutex);
     pthread_join(c->hand, NULL);
     if (c->hid) {

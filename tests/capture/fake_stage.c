@@ -36,6 +36,7 @@ static void light(void *context, int lamp, uint16_t level)
     fake_stage *stage = context;
     stage->lamp = lamp == WEFT_PROTOCOL_NO_LAMP ? -1 : lamp;
     stage->level = level;
+    pthread_cond_broadcast(&stage->changed);
 }
 
 static void shutter(void *context, bool closed)
@@ -79,6 +80,7 @@ void fake_stage_start(fake_stage *stage)
 {
     *stage = (fake_stage){.random = 99, .boot = 1000, .now_ms = 0xffffff00u /* soon wraps */};
     pthread_mutex_init(&stage->mutex, NULL);
+    pthread_cond_init(&stage->changed, NULL);
     stage->hardware = (weft_firmware_hardware){.context = stage,
                                                .axis_count = FAKE_AXES,
                                                .lamp_count = FAKE_LAMPS,
@@ -155,6 +157,7 @@ static void strike(fake_stage *stage, fake_fault fault)
     if (fault == FAKE_UNPLUGGED || fault == FAKE_RESTARTED) {
         stage->unplug_wanted = true;
         stage->unplug_kind = fault;
+        pthread_cond_broadcast(&stage->changed);
     }
 }
 
@@ -204,6 +207,14 @@ void fake_stage_ask(fake_stage *stage, const uint8_t question[WEFT_REPORT_SIZE],
 }
 
 /* ---- Truth ---- */
+
+void fake_stage_wait_until_dark(fake_stage *stage)
+{
+    pthread_mutex_lock(&stage->mutex);
+    while (stage->level != 0)
+        pthread_cond_wait(&stage->changed, &stage->mutex);
+    pthread_mutex_unlock(&stage->mutex);
+}
 
 double fake_stage_truth(fake_stage *stage, int axis)
 {

@@ -35,6 +35,7 @@ typedef struct fake_answers {
 
 typedef struct fake_stage {
     pthread_mutex_t mutex;
+    pthread_cond_t changed; /* lamps, or whether the device is to be pulled */
     weft_firmware firmware;
     weft_firmware_hardware hardware;
     uint32_t now_ms, boot;
@@ -67,6 +68,9 @@ void fake_stage_restart(fake_stage *stage);
 
 /* What the device answers to a question, faults included. */
 void fake_stage_ask(fake_stage *stage, const uint8_t question[WEFT_REPORT_SIZE], fake_answers *answers);
+
+/* Waits until no lamp burns, however long that takes. */
+void fake_stage_wait_until_dark(fake_stage *stage);
 
 /* Degrees at which the gear of an axis really stands. */
 double fake_stage_truth(fake_stage *stage, int axis);

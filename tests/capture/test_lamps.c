@@ -14,22 +14,40 @@
 /* ---- Relay boards ---- */
 
 typedef struct fake_relay {
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
     unsigned closed;
     int switched_on;
     int ignores; /* changes that it will not carry out */
 } fake_relay;
 
-static void set_feature(void *context, const unsigned char *bytes, size_t size)
+static void set_relays(fake_relay *relay, const unsigned char *bytes)
 {
-    fake_relay *relay = context;
-    if (size < 3 || relay->ignores-- > 0)
-        return;
     unsigned bit = bytes[2] >= 1 && bytes[2] <= 8 ? 1u << (bytes[2] - 1) : 0;
     relay->switched_on += bytes[1] == 0xff;
     relay->closed = bytes[1] == 0xff   ? relay->closed | bit
                     : bytes[1] == 0xfd ? relay->closed & ~bit
                     : bytes[1] == 0xfc ? 0
                                        : relay->closed;
+}
+
+static void set_feature(void *context, const unsigned char *bytes, size_t size)
+{
+    fake_relay *relay = context;
+    if (size < 3 || relay->ignores-- > 0)
+        return;
+    pthread_mutex_lock(&relay->mutex);
+    set_relays(relay, bytes);
+    pthread_cond_broadcast(&relay->changed);
+    pthread_mutex_unlock(&relay->mutex);
+}
+
+static void wait_until_open(fake_relay *relay)
+{
+    pthread_mutex_lock(&relay->mutex);
+    while (relay->closed != 0)
+        pthread_cond_wait(&relay->changed, &relay->mutex);
+    pthread_mutex_unlock(&relay->mutex);
 }
 
 static void get_feature(void *context, unsigned char *bytes, size_t size)
@@ -58,7 +76,7 @@ static const weft_relay_settings relay_settings = {.address = {0x16c0, 0x05df, "
 
 static void a_relay_board_switches_one_lamp_at_a_time_and_is_found_again(void **state)
 {
-    fake_relay fake = {0};
+    fake_relay fake = {.mutex = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
     const fake_hid_kind kind = kind_of_relay(&fake);
     fake_hid *hid = fake_hid_plug(*state, 3, &kind);
     weft_relay *relay;
@@ -116,25 +134,12 @@ static bool light_and_die(weft_lamp_switch lamps, int killer)
     return killer ? WIFSIGNALED(status) && WTERMSIG(status) == killer : WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-static bool comes_true(bool (*dark)(void *context), void *context)
-{
-    for (int wait = 0; !dark(context) && wait < 1000; wait++)
-        nanosleep(&(struct timespec){0, 10000000}, NULL);
-    return dark(context);
-}
-
 static const int killers[] = {SIGINT, SIGTERM, SIGHUP, SIGKILL};
 enum { KILLERS = sizeof killers / sizeof *killers };
 
-static bool relays_are_open(void *context)
-{
-    const volatile unsigned *closed = &((fake_relay *)context)->closed;
-    return *closed == 0;
-}
-
 static void a_relay_that_nobody_holds_opens(void **state)
 {
-    fake_relay fake = {0};
+    fake_relay fake = {.mutex = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
     const fake_hid_kind kind = kind_of_relay(&fake);
     fake_hid *hid = fake_hid_plug(*state, 3, &kind);
     weft_relay *relay;
@@ -142,38 +147,31 @@ static void a_relay_that_nobody_holds_opens(void **state)
     assert_true(light_and_die(weft_relay_lamps(relay), 0));
     assert_int_equal(fake.closed, 2); /* a guard that is sent away switches nothing */
     for (int i = 0; i < KILLERS; i++) {
-        fake = (fake_relay){0};
+        fake.closed = 0;
+        fake.switched_on = 0;
         assert_true(light_and_die(weft_relay_lamps(relay), killers[i]));
         assert_int_equal(fake.switched_on, 1);
-        assert_true(comes_true(relays_are_open, &fake));
+        wait_until_open(&fake);
     }
     weft_relay_free(relay);
     fake_hid_unplug(hid);
     fake_hid_free(hid);
 }
 
-static bool stage_is_dark(void *context)
-{
-    fake_stage *stage = context;
-    pthread_mutex_lock(&stage->mutex);
-    bool dark = stage->level == 0;
-    pthread_mutex_unlock(&stage->mutex);
-    return dark;
-}
-
 static void a_lamp_of_the_stage_that_nobody_holds_goes_off(void **state)
 {
     fake_controller fake;
     const weft_axes axes = {.count = 0};
-    const weft_controller_settings settings = {.address = {0x1209, 0xb7f1, "ST-0001"}, .timeout_s = 0.06, .retries = 8};
+    const weft_controller_settings settings = {
+        .address = {0x1209, 0xb7f1, "ST-0001"}, .timeout_s = 0.06, .retries = 100};
     weft_controller *controller;
     fake_controller_start(&fake, *state);
     assert_int_equal(weft_controller_create(&settings, &axes, &controller, NULL), WEFT_OK);
     assert_true(light_and_die(weft_controller_lamps(controller), 0));
-    assert_false(stage_is_dark(&fake.stage));
+    assert_int_not_equal(fake.stage.level, 0);
     for (int i = 0; i < KILLERS; i++) {
         assert_true(light_and_die(weft_controller_lamps(controller), killers[i]));
-        assert_true(comes_true(stage_is_dark, &fake.stage));
+        fake_stage_wait_until_dark(&fake.stage);
     }
     weft_controller_free(controller);
     fake_controller_end(&fake);

@@ -1,3 +1,4 @@
+#include "tests/capture/disk_calls.h"
 #include "tests/capture/small_session.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
@@ -10,14 +11,29 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Runs in processes of their own: what kill -9 leaves behind is then all that the next run knows. (The parent starts no
- * OpenMP thread, for those would not survive fork.) */
-static pid_t start_run(void)
+/* Calls of the system before the process dies; negative: it lives. */
+static int calls_left;
+
+static int die_in_time(char event)
 {
+    (void)event;
+    if (calls_left-- == 0)
+        raise(SIGKILL);
+    return 0;
+}
+
+/* Runs in a process of its own that is killed before its call `last_call` that changes the disk; -1: it is not. What
+ * the kill leaves behind is then all that the next run knows. (The parent starts no OpenMP thread, for those would not
+ * survive fork.) Returns whether it was killed. */
+static bool run(int last_call)
+{
+    int status;
     virtual_session request = small_session_request();
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
+        calls_left = last_call;
+        disk_call_visit = die_in_time;
         weft_capture_summary summary;
         weft_error error = {0};
         weft_code code = virtual_session_take(&request, NULL, NULL, &summary, &error);
@@ -25,26 +41,15 @@ static pid_t start_run(void)
             fprintf(stderr, "%s\n", error.message);
         _exit((int)code);
     }
-    return child;
+    assert_true(waitpid(child, &status, 0) > 0);
+    bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+    assert_true(killed || (WIFEXITED(status) && WEXITSTATUS(status) == 0));
+    return killed;
 }
 
 static void complete_run(void)
 {
-    int status;
-    assert_int_equal(waitpid(start_run(), &status, 0) > 0, 1);
-    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-}
-
-/* Waits until the journal has `lines` lines, then for some microseconds, and kills. Whether the run was still going. */
-static bool kill_run(pid_t child, int lines, useconds_t delay_us)
-{
-    int status;
-    while (small_session_journal_lines("session") < lines && waitpid(child, &status, WNOHANG) == 0)
-        usleep(200);
-    usleep(delay_us);
-    if (kill(child, SIGKILL) != 0)
-        return false;
-    return waitpid(child, &status, 0) > 0 && WIFSIGNALED(status);
+    assert_false(run(-1));
 }
 
 static void remove_session(void)
@@ -55,28 +60,24 @@ static void remove_session(void)
 static void a_session_killed_at_any_moment_loses_and_repeats_nothing(void **state)
 {
     (void)state;
-    srand(20240607);
-    int kills = 0;
-    for (int round = 0; round < 2; round++) {
-        for (int attempt = 0; attempt < 60; attempt++) {
-            int before = small_session_journal_lines("session");
-            if (before >= SMALL_SHOTS)
-                break;
-            pid_t child = start_run();
-            kills += kill_run(child, before + rand() % 3, (useconds_t)(rand() % 3000));
-            assert_true(small_session_journal_lines("session") >= before);
+    for (int step = 5; step <= 7; step += 2) {
+        int kills = 0, before = 0;
+        while (run(kills * step % 23)) {
+            int lines = small_session_journal_lines("session");
+            assert_true(lines >= before);
+            before = lines;
+            kills++;
         }
-        complete_run();
         small_session_assert_whole("session");
+        assert_true(kills >= 9);
         remove_session();
     }
-    assert_true(kills >= 9);
 }
 
 static void a_run_killed_before_its_first_photograph_starts_again(void **state)
 {
     (void)state;
-    kill_run(start_run(), 0, 1000);
+    assert_true(run(0));
     complete_run();
     small_session_assert_whole("session");
     remove_session();

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 static void remove_session(void)
@@ -22,6 +23,16 @@ static weft_code run(const virtual_session *request, weft_capture_summary *summa
 {
     *error = (weft_error){0};
     return virtual_session_take(request, NULL, NULL, summary, error);
+}
+
+/* The time of day, which some image libraries write into a file. They find this function before that of the system. */
+static time_t time_of_day = 1700000000;
+
+__attribute__((visibility("default"))) time_t time(time_t *now)
+{
+    if (now)
+        *now = time_of_day;
+    return time_of_day;
 }
 
 static uint32_t crc_of_run(uint64_t seed, int threads)
@@ -43,7 +54,7 @@ static void a_seed_gives_the_same_bytes_for_any_number_of_threads(void **state)
 {
     (void)state;
     uint32_t crc = crc_of_run(1, 1);
-    sleep(1); /* Some image libraries write the time of day into a file. */
+    time_of_day += 86400;
     assert_int_equal(crc_of_run(1, 3), crc);
     assert_int_not_equal(crc_of_run(2, 1), crc);
 }

@@ -54,7 +54,7 @@ static const weft_axes goniometer = {.count = FAKE_AXES,
                                                .acceleration_deg_s2 = 1e4,
                                                .backlash_deg = 0.4}}};
 
-/* Short, so that lost answers cost little; with eight retries a machine that stalls for half a second is no fault. */
+/* Short, so that lost answers cost little; with so many retries a machine that stalls for seconds is no fault. */
 static const double timeout_s = 0.06;
 
 typedef struct bench {
@@ -77,7 +77,7 @@ static void open_bench_with(bench *b, UMockdevTestbed *testbed, const weft_axes 
     fake_controller_start(&b->fake, testbed);
     const weft_controller_settings settings = {.address = {0x1209, 0xb7f1, "ST-0001"},
                                                .timeout_s = timeout_s,
-                                               .retries = 8,
+                                               .retries = 100,
                                                .replug_s = 20,
                                                .tolerance_deg = 0.01,
                                                .stop = &b->stop};

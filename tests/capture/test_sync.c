@@ -1,91 +1,26 @@
 /* What a power cut may take. Every call that syncs, renames or appends is noted, and may be made to fail. */
+#include "tests/capture/disk_calls.h"
 #include "tests/capture/small_session.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 
 #include <errno.h>
-#include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-int __real_fdatasync(int descriptor);
-int __real_fsync(int descriptor);
-int __real_rename(const char *from, const char *to);
-ssize_t __real_pwrite(int descriptor, const void *bytes, size_t size, off_t at);
-int __wrap_fdatasync(int descriptor);
-int __wrap_fsync(int descriptor);
-int __wrap_rename(const char *from, const char *to);
-ssize_t __wrap_pwrite(int descriptor, const void *bytes, size_t size, off_t at);
-
-/* In the order of the calls, of the thread that writes and then of the one that finishes: P the photograph synced, R
- * renamed, L its journal line appended; v the folder of a view, s that of the session, J the journal synced. */
+/* Events (tests/capture/disk_calls.h) in the order of the calls, of the thread that writes and then of the one that
+ * finishes. */
 static char noted[4096];
 static size_t note_count;
 static int photographs_until_failure = -1;
 
-static void note(char event)
+static int note(char event)
 {
-    if (note_count + 1 < sizeof noted)
+    if (event == 'P' && photographs_until_failure >= 0 && photographs_until_failure-- == 0)
+        return EIO;
+    if (event != '-' && note_count + 1 < sizeof noted)
         noted[note_count++] = event;
-}
-
-static bool ends_with(const char *text, const char *end)
-{
-    size_t length = strlen(text), tail = strlen(end);
-    return length >= tail && strcmp(text + length - tail, end) == 0;
-}
-
-static void path_of(int descriptor, char path[PATH_MAX])
-{
-    char link[64];
-    snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
-    ssize_t length = readlink(link, path, PATH_MAX - 1);
-    path[length < 0 ? 0 : length] = '\0';
-}
-
-int __wrap_fdatasync(int descriptor)
-{
-    char path[PATH_MAX];
-    path_of(descriptor, path);
-    if (ends_with(path, "/session/.photograph.tif")) {
-        if (photographs_until_failure >= 0 && photographs_until_failure-- == 0) {
-            errno = EIO;
-            return -1;
-        }
-        note('P');
-    } else if (ends_with(path, "/session/journal.jsonl")) {
-        note('J');
-    }
-    return __real_fdatasync(descriptor);
-}
-
-int __wrap_fsync(int descriptor)
-{
-    char path[PATH_MAX];
-    struct stat status;
-    path_of(descriptor, path);
-    if (fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode) && strstr(path, "/session"))
-        note(ends_with(path, "/session") ? 's' : 'v');
-    return __real_fsync(descriptor);
-}
-
-int __wrap_rename(const char *from, const char *to)
-{
-    if (ends_with(from, "/.photograph.tif"))
-        note('R');
-    return __real_rename(from, to);
-}
-
-ssize_t __wrap_pwrite(int descriptor, const void *bytes, size_t size, off_t at)
-{
-    char path[PATH_MAX];
-    path_of(descriptor, path);
-    if (ends_with(path, "/session/journal.jsonl"))
-        note('L');
-    return __real_pwrite(descriptor, bytes, size, at);
+    return 0;
 }
 
 /* Takes a session and returns what was noted from the first photograph on. */
@@ -95,6 +30,7 @@ static const char *take_session(weft_code expected)
     weft_capture_summary summary;
     weft_error error = {0};
     note_count = 0;
+    disk_call_visit = note;
     assert_int_equal(virtual_session_take(&request, NULL, NULL, &summary, &error), expected);
     noted[note_count] = '\0';
     const char *first = strchr(noted, 'P');
