@@ -90,8 +90,8 @@ static void bound(plan *view, double scatter_deg, int shots, double line_deg[2])
 static void calibrate(double scatter_deg, int rounds, uint64_t seed, double found[2], double expected[2])
 {
     weft_virtual_settings settings = axes_off_settings();
-    settings.stay_rotation_deg = scatter_deg;
-    settings.stay_translation_mm = 2 * scatter_deg;
+    settings.viewpoint_rotation_deg = scatter_deg;
+    settings.viewpoint_translation_mm = 2 * scatter_deg;
     axes_series s = axes_series_take(&settings, seed, rounds);
     weft_virtual_world rest = axes_at_rest(&s.world);
     weft_axes_report report;

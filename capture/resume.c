@@ -119,6 +119,8 @@ static weft_code check_settings(const weft_session *wanted, const weft_session *
     weft_code code = weft_json_parse(wanted->rig_settings, strlen(wanted->rig_settings), 0, wanted->folder, &a, error);
     if (code == WEFT_OK)
         code = weft_json_parse(found->rig_settings, strlen(found->rig_settings), 0, wanted->folder, &b, error);
+    if (code == WEFT_OK)
+        weft_settings_rename_former(b);
     if (code == WEFT_OK && (find_difference(a, b, name, sizeof name) || find_difference(b, a, name, sizeof name)))
         code = weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with another '%s'; repeat its settings or choose another folder",

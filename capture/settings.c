@@ -117,6 +117,17 @@ static weft_code read_setting(const char *path, const char *name, const json_t *
     return WEFT_OK;
 }
 
+void weft_settings_rename_former(json_t *object)
+{
+    static const char *const names[][2] = {{"stay_rotation_deg", "viewpoint_rotation_deg"},
+                                           {"stay_translation_mm", "viewpoint_translation_mm"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        json_t *value = json_object_get(object, names[i][0]);
+        if (value && json_object_set(object, names[i][1], value) == 0)
+            json_object_del(object, names[i][0]);
+    }
+}
+
 static weft_code read_settings(const char *path, json_t *root, const char *rig, const weft_setting_group *groups,
                                int group_count, weft_error *error)
 {
@@ -126,6 +137,7 @@ static weft_code read_settings(const char *path, json_t *root, const char *rig, 
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a JSON object with a key 'rig'", path);
     if (strcmp(found, rig) != 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': this build has no rig '%s', only '%s'", path, found, rig);
+    weft_settings_rename_former(root);
     json_object_foreach (root, name, value) {
         if (strcmp(name, "rig") != 0)
             WEFT_TRY(read_setting(path, name, value, groups, group_count, error));

@@ -68,6 +68,9 @@ void weft_setting_group_reset(const weft_setting_group *group);
 weft_code weft_setting_groups_read(const char *path, const char *rig, const weft_setting_group *groups, int group_count,
                                    weft_error *error);
 
+/* Gives settings of a JSON object that were called otherwise before 0.2 the names that they have now. */
+void weft_settings_rename_former(json_t *object);
+
 /* Adds every setting to a JSON object. */
 void weft_setting_group_write(const weft_setting_group *group, json_t **object);
 

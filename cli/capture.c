@@ -99,14 +99,23 @@ static void say_warning(const weft_common_options *common, const char *warning)
         weft_command_say(common, "%s", warning);
 }
 
+static void say_camera(const capture_command *command, const weft_rig *rig)
+{
+    if (rig->camera_name)
+        weft_command_say(&command->common, "camera '%s':", rig->camera_name);
+}
+
 static weft_code rehearse(const capture_command *command, weft_rig *rig, const char *warning, weft_error *error)
 {
-    weft_capture_rehearsal rehearsal;
-    WEFT_TRY(weft_capture_rehearse(&command->request, rig, &rehearsal, error));
-    say_warning(&command->common, warning);
-    weft_say_rehearsal(&command->common, &rehearsal, rig->stage.order != NULL);
-    weft_capture_rehearsal_free(&rehearsal);
-    return WEFT_OK;
+    for (weft_rig *one = rig; one; one = one->next) {
+        weft_capture_rehearsal rehearsal;
+        say_camera(command, one);
+        WEFT_TRY(weft_capture_rehearse(&command->request, one, &rehearsal, error));
+        say_warning(&command->common, warning);
+        weft_say_rehearsal(&command->common, &rehearsal, one->stage.order != NULL);
+        weft_capture_rehearsal_free(&rehearsal);
+    }
+    return rig->next ? weft_say_synchronised_shots(&command->common, &command->request, rig, error) : WEFT_OK;
 }
 
 /* ---- Checks before a run ---- */
@@ -114,12 +123,9 @@ static weft_code rehearse(const capture_command *command, weft_rig *rig, const c
 static weft_code judge(const capture_command *command, const char *camera, const weft_preflight *result,
                        weft_error *error)
 {
-    char path[PATH_MAX];
-    size_t length = strlen(command->request.folder);
-    while (length > 1 && command->request.folder[length - 1] == '/')
-        length--;
-    snprintf(path, sizeof path, "%.*s%s%s.check.png", (int)length, command->request.folder, camera ? "." : "",
-             camera ? camera : "");
+    char path[PATH_MAX], ending[64];
+    snprintf(ending, sizeof ending, "%s%s.check.png", camera ? "." : "", camera ? camera : "");
+    weft_beside_folder(command->request.folder, ending, path);
     WEFT_TRY(weft_image_write(path, &result->sheet, NULL, error));
     WEFT_TRY(weft_say_checks(&command->common, result, error));
     weft_command_say(&command->common,
@@ -132,24 +138,19 @@ static weft_code judge(const capture_command *command, const char *camera, const
     return failed ? weft_fail(error, WEFT_BAD_INPUT, "%d of the checks failed", failed) : WEFT_OK;
 }
 
-static weft_code check_rig(const capture_command *command, weft_rig *rig, weft_error *error)
-{
-    weft_progress progress = weft_command_progress(&command->common);
-    weft_preflight result;
-    WEFT_TRY(weft_preflight_run(&command->request, rig, &progress, &result, error));
-    weft_code code = judge(command, rig->camera_name, &result, error);
-    weft_preflight_free(&result);
-    return code;
-}
-
 /* Of several cameras, one after another. */
 static weft_code check_all(const capture_command *command, weft_rig *rig, weft_error *error)
 {
+    weft_progress progress = weft_command_progress(&command->common);
     weft_code result = WEFT_OK;
     for (weft_rig *one = rig; one; one = one->next) {
-        if (one->camera_name)
-            weft_command_say(&command->common, "camera '%s':", one->camera_name);
-        weft_code code = check_rig(command, one, error);
+        weft_preflight found;
+        say_camera(command, one);
+        weft_code code = weft_preflight_run(&command->request, one, &progress, &found, error);
+        if (code == WEFT_OK) {
+            code = judge(command, one->camera_name, &found, error);
+            weft_preflight_free(&found);
+        }
         if (code == WEFT_SYSTEM)
             return code;
         result = result == WEFT_OK ? code : result;
@@ -181,15 +182,15 @@ static void say_summary(const capture_command *command, const weft_capture_summa
 /* The truth of each of several cameras lies in a file of its own: its name goes before the ending. */
 static void choose_truth_path(const capture_command *command, const weft_rig *rig, char path[PATH_MAX])
 {
-    static const char ending[] = ".truth.h5";
-    const char *base = command->truth.path ? command->truth.path : command->request.folder;
-    size_t length = strlen(base);
-    const char *last = command->truth.path && length > 3 && strcmp(base + length - 3, ".h5") == 0 ? ".h5" : ending;
-    while (!command->truth.path && length > 1 && base[length - 1] == '/')
-        length--;
-    if (command->truth.path && last != ending)
-        length -= 3;
-    snprintf(path, PATH_MAX, "%.*s.%s%s", (int)length, base, rig->camera_name, last);
+    const char *asked = command->truth.path;
+    char ending[64];
+    size_t length = asked ? strlen(asked) : 0;
+    bool has_ending = length > 3 && strcmp(asked + length - 3, ".h5") == 0;
+    snprintf(ending, sizeof ending, ".%s%s", rig->camera_name, has_ending ? ".h5" : ".truth.h5");
+    if (asked)
+        snprintf(path, PATH_MAX, "%.*s%s", (int)(length - (has_ending ? 3 : 0)), asked, ending);
+    else
+        weft_beside_folder(command->request.folder, ending, path);
 }
 
 /* Of each camera of the virtual rig, with or without writing it. */
@@ -238,21 +239,6 @@ static weft_code take_session(const capture_command *command, weft_rig *rig, con
 
 /* ---- Rigs of one or several cameras ---- */
 
-static void say_camera(const capture_command *command, const weft_rig *rig)
-{
-    if (rig->camera_name)
-        weft_command_say(&command->common, "camera '%s':", rig->camera_name);
-}
-
-static weft_code rehearse_all(const capture_command *command, weft_rig *rig, const char *warning, weft_error *error)
-{
-    for (weft_rig *one = rig; one; one = one->next) {
-        say_camera(command, one);
-        WEFT_TRY(rehearse(command, one, warning, error));
-    }
-    return rig->next ? weft_say_synchronised_shots(&command->common, &command->request, rig, error) : WEFT_OK;
-}
-
 /* Of one camera a file, of several a folder. */
 static weft_code read_poses(const capture_command *command, weft_rig *rig, weft_error *error)
 {
@@ -271,7 +257,7 @@ static weft_code capture_with_virtual_cameras(const capture_command *command, we
 {
     WEFT_TRY(read_poses(command, &rigs[0].rig, error));
     if (command->dry_run)
-        return rehearse_all(command, &rigs[0].rig, rigs[0].warning, error);
+        return rehearse(command, &rigs[0].rig, rigs[0].warning, error);
     return command->check ? check_all(command, &rigs[0].rig, error) : take_session(command, &rigs[0].rig, rigs, error);
 }
 
@@ -290,10 +276,10 @@ static weft_code capture_with_virtual_rig(capture_command *command, weft_error *
 
 static weft_code capture_with_laboratory(const capture_command *command, weft_error *error)
 {
-    weft_terminal_operator person = weft_operator_of(&command->common, &stop_asked);
+    weft_terminal_operator terminal = weft_operator_of(&command->common, &stop_asked);
     const weft_laboratory_request request = {.rig_file = command->rig_file,
                                              .sample = command->rig.sample,
-                                             .rig_operator = weft_operator_at_terminal(&person),
+                                             .rig_operator = weft_operator_at_terminal(&terminal),
                                              .stop = &stop_asked};
     weft_laboratory *laboratory;
     if (command->truth.path)
@@ -308,8 +294,7 @@ static weft_code capture_with_laboratory(const capture_command *command, weft_er
         return weft_fail(error, WEFT_BAD_USAGE, "--colour is of one camera: name that of each in '%s'",
                          command->rig_file);
     }
-    weft_code code =
-        command->dry_run ? rehearse_all(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
+    weft_code code = command->dry_run ? rehearse(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
     if (code == WEFT_OK && command->check)
         code = check_all(command, rig, error);
     else if (code == WEFT_OK && !command->dry_run)

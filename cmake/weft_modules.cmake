@@ -54,7 +54,7 @@ weft_module(capture
     FOLDERS capture capture/status
     USES base base/picture base/text btf/session)
 weft_module(capture/virtual
-    USES base base/text capture geometry reflectance)
+    USES base base/text btf/session capture geometry reflectance)
 weft_module(capture/synthetic
     USES base base/picture base/text btf/dataset btf/session capture/virtual)
 weft_module(capture/print

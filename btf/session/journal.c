@@ -49,8 +49,9 @@ static bool unpack_brackets(json_t *list, weft_shot_record *record)
 static bool unpack_record(json_t *json, json_int_t *shot, weft_shot_record *record)
 {
     json_int_t viewpoint, bytes, crc32;
-    if (json_unpack(json, "{sI sI sF sI sI}", "shot", shot, "stay", &viewpoint, "exposure_s", &record->exposure_s,
-                    "bytes", &bytes, "crc32", &crc32) != 0)
+    const char *key = json_object_get(json, "stay") ? "stay" : "viewpoint"; /* before and since 0.2 */
+    if (json_unpack(json, "{sI sI sF sI sI}", "shot", shot, key, &viewpoint, "exposure_s", &record->exposure_s, "bytes",
+                    &bytes, "crc32", &crc32) != 0)
         return false;
     if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || viewpoint < 0 || viewpoint >= WEFT_SESSION_MAX_SHOTS ||
         !(record->exposure_s > 0) || !unpack_brackets(json_object_get(json, "brackets"), record))
@@ -165,7 +166,7 @@ enum { LINE_SIZE = 1024 };
 static int write_line(int shot, const weft_shot_record *record, char line[LINE_SIZE])
 {
     int length =
-        snprintf(line, LINE_SIZE, "{\"shot\":%d,\"stay\":%d,\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u", shot,
+        snprintf(line, LINE_SIZE, "{\"shot\":%d,\"viewpoint\":%d,\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u", shot,
                  record->viewpoint, record->exposure_s, (unsigned long long)record->bytes, record->crc32);
     for (int i = 0; i < record->bracket_count; i++) {
         const weft_bracket_record *bracket = &record->bracket[i];

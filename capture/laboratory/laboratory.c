@@ -287,30 +287,28 @@ static weft_code read_lamps(weft_laboratory *lab, weft_error *error)
 
 /* ---- Stage ---- */
 
-static weft_usb_address address_of(const weft_usb_name *usb)
-{
-    return (weft_usb_address){(unsigned short)usb->vendor, (unsigned short)usb->product, usb->serial};
-}
-
 static weft_code create_controller(weft_laboratory *lab, weft_error *error)
 {
     const weft_stage_description *stage = &lab->file.stage;
-    const weft_controller_settings settings = {.address = address_of(&stage->usb),
-                                               .timeout_s = stage->timeout_s,
-                                               .retries = (int)stage->retries,
-                                               .replug_s = stage->replug_s,
-                                               .poll_s = stage->poll_s,
-                                               .tolerance_deg = stage->tolerance_deg,
-                                               .stop = lab->request.stop};
+    const weft_controller_settings settings = {
+        .address = {(unsigned short)stage->usb_vendor, (unsigned short)stage->usb_product, stage->usb_serial},
+        .timeout_s = stage->timeout_s,
+        .retries = (int)stage->retries,
+        .replug_s = stage->replug_s,
+        .poll_s = stage->poll_s,
+        .tolerance_deg = stage->tolerance_deg,
+        .stop = lab->request.stop};
     return weft_controller_create(&settings, &lab->file.axes, &lab->controller, error);
 }
 
 static weft_code create_relay(weft_laboratory *lab, weft_error *error)
 {
-    const weft_relay_settings settings = {.address = address_of(&lab->file.light.usb),
-                                          .replug_s = lab->file.stage.replug_s,
-                                          .retries = (int)lab->file.stage.retries,
-                                          .stop = lab->request.stop};
+    const weft_light_description *light = &lab->file.light;
+    const weft_relay_settings settings = {
+        .address = {(unsigned short)light->usb_vendor, (unsigned short)light->usb_product, light->usb_serial},
+        .replug_s = lab->file.stage.replug_s,
+        .retries = (int)lab->file.stage.retries,
+        .stop = lab->request.stop};
     return weft_relay_create(&settings, &lab->relay, error);
 }
 

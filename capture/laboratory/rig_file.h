@@ -15,23 +15,19 @@ typedef enum weft_camera_backend { WEFT_CAMERA_FOLDER, WEFT_CAMERA_VIDEO, WEFT_C
 typedef enum weft_camera_trigger { WEFT_TRIGGER_NONE, WEFT_TRIGGER_STAGE, WEFT_TRIGGER_HAND } weft_camera_trigger;
 typedef enum weft_camera_values { WEFT_VALUES_LINEAR, WEFT_VALUES_SRGB } weft_camera_values;
 
-/* A device on USB. */
-typedef struct weft_usb_name {
-    double vendor, product;
-    char serial[WEFT_RIG_TEXT_SIZE]; /* empty: any */
-} weft_usb_name;
-
 typedef struct weft_stage_description {
     weft_stage_backend backend;
-    weft_usb_name usb;
+    double usb_vendor, usb_product;
+    char usb_serial[WEFT_RIG_TEXT_SIZE]; /* empty: any */
     bool one_by_one;
     double tolerance_deg, timeout_s, retries, replug_s, poll_s;
 } weft_stage_description;
 
 typedef struct weft_light_description {
     weft_light_backend backend;
-    weft_usb_name usb;
-    char lamps[WEFT_RIG_TEXT_SIZE]; /* table of their directions, beside the rig file; empty: one light */
+    double usb_vendor, usb_product;
+    char usb_serial[WEFT_RIG_TEXT_SIZE]; /* empty: any */
+    char lamps[WEFT_RIG_TEXT_SIZE];      /* table of their directions, beside the rig file; empty: one light */
     double theta_deg, phi_deg, distance_mm, lamp_tolerance_deg, level, warm_up_s;
 } weft_light_description;
 

@@ -5,34 +5,20 @@
 #include <string.h>
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
-#define NUMBER(type, field, default_value, least, most)                                                                \
+#define KEY(type, field, ...)                                                                                          \
     {                                                                                                                  \
-        .name = #field, .kind = WEFT_KEY_NUMBER, .offset = offsetof(type, field), .value = (default_value),            \
-        .low = (least), .high = (most)                                                                                 \
+        .name = #field, .offset = offsetof(type, field), __VA_ARGS__                                                   \
     }
-#define WHOLE(type, field, default_value, least, most)                                                                 \
-    {                                                                                                                  \
-        .name = #field, .kind = WEFT_KEY_WHOLE, .offset = offsetof(type, field), .value = (default_value),             \
-        .low = (least), .high = (most)                                                                                 \
-    }
+#define NUMBER(type, field, usual, least, most)                                                                        \
+    KEY(type, field, .kind = WEFT_KEY_NUMBER, .value = (usual), .low = (least), .high = (most))
+#define WHOLE(type, field, usual, least, most)                                                                         \
+    KEY(type, field, .kind = WEFT_KEY_WHOLE, .value = (usual), .low = (least), .high = (most))
 #define NEEDED(type, field, least, most)                                                                               \
-    {                                                                                                                  \
-        .name = #field, .kind = WEFT_KEY_NUMBER, .offset = offsetof(type, field), .required = true, .low = (least),    \
-        .high = (most)                                                                                                 \
-    }
-#define TEXT(type, field, default_text)                                                                                \
-    {                                                                                                                  \
-        .name = #field, .kind = WEFT_KEY_TEXT, .offset = offsetof(type, field), .text = (default_text)                 \
-    }
-#define WORD(type, field, must, default_word, list)                                                                    \
-    {                                                                                                                  \
-        .name = #field, .kind = WEFT_KEY_WORD, .offset = offsetof(type, field), .required = (must),                    \
-        .text = (default_word), .words = (list)                                                                        \
-    }
-#define FLAG(type, field, label)                                                                                       \
-    {                                                                                                                  \
-        .name = (label), .kind = WEFT_KEY_FLAG, .offset = offsetof(type, field), .value = 0                            \
-    }
+    KEY(type, field, .kind = WEFT_KEY_NUMBER, .required = true, .low = (least), .high = (most))
+#define TEXT(type, field, usual) KEY(type, field, .kind = WEFT_KEY_TEXT, .text = (usual))
+#define WORD(type, field, must, usual, list)                                                                           \
+    KEY(type, field, .kind = WEFT_KEY_WORD, .required = (must), .text = (usual), .words = (list))
+#define FLAG(type, field) KEY(type, field, .kind = WEFT_KEY_FLAG)
 
 static const char *const stage_words[] = {"usb", "none", NULL};
 static const char *const light_words[] = {"stage", "relay", "none", NULL};
@@ -41,7 +27,7 @@ static const char *const trigger_words[] = {"none", "stage", "hand", NULL};
 static const char *const value_words[] = {"linear", "srgb", NULL};
 
 static const weft_rig_key file_keys[] = {
-    {.name = "name", .kind = WEFT_KEY_TEXT, .offset = offsetof(weft_rig_file, name), .required = true},
+    KEY(weft_rig_file, name, .kind = WEFT_KEY_TEXT, .required = true),
     NEEDED(weft_rig_file, opening_mm, 1, 1000),
     TEXT(weft_rig_file, poses, ""),
 };
@@ -49,45 +35,25 @@ static const weft_rig_key file_keys[] = {
 static const weft_rig_key axis_keys[] = {
     WORD(weft_axis, moves, true, NULL, weft_body_name),
     WORD(weft_axis, angle, true, NULL, weft_turn_name),
-    {.name = "channel",
-     .kind = WEFT_KEY_INT,
-     .offset = offsetof(weft_axis, channel),
-     .value = 0,
-     .low = 0,
-     .high = WEFT_AXES_MAX - 1},
+    KEY(weft_axis, channel, .kind = WEFT_KEY_INT, .high = WEFT_AXES_MAX - 1),
     NEEDED(weft_axis, low_deg, -3600, 3600),
     NEEDED(weft_axis, high_deg, -3600, 3600),
     NUMBER(weft_axis, zero_deg, 0, -3600, 3600),
-    FLAG(weft_axis, reversed, "reversed"),
-    FLAG(weft_axis, by_hand, "by_hand"),
+    FLAG(weft_axis, reversed),
+    FLAG(weft_axis, by_hand),
     NUMBER(weft_axis, speed_deg_s, 10, 1e-3, 1e4),
     NUMBER(weft_axis, acceleration_deg_s2, 20, 1e-3, 1e6),
     NUMBER(weft_axis, settle_s, 0.5, 0, 600),
     NUMBER(weft_axis, backlash_deg, 0, 0, 30),
-    FLAG(weft_axis, approach_down, "approach_down"),
+    FLAG(weft_axis, approach_down),
 };
-
-#define USB(type, default_vendor, default_product)                                                                     \
-    {.name = "usb_vendor",                                                                                             \
-     .kind = WEFT_KEY_WHOLE,                                                                                           \
-     .offset = offsetof(type, usb.vendor),                                                                             \
-     .value = (default_vendor),                                                                                        \
-     .low = 0,                                                                                                         \
-     .high = 0xffff},                                                                                                  \
-        {.name = "usb_product",                                                                                        \
-         .kind = WEFT_KEY_WHOLE,                                                                                       \
-         .offset = offsetof(type, usb.product),                                                                        \
-         .value = (default_product),                                                                                   \
-         .low = 0,                                                                                                     \
-         .high = 0xffff},                                                                                              \
-    {                                                                                                                  \
-        .name = "usb_serial", .kind = WEFT_KEY_TEXT, .offset = offsetof(type, usb.serial), .text = ""                  \
-    }
 
 static const weft_rig_key stage_keys[] = {
     WORD(weft_stage_description, backend, true, NULL, stage_words),
-    USB(weft_stage_description, 0x1209, 0xb7f1),
-    FLAG(weft_stage_description, one_by_one, "one_by_one"),
+    WHOLE(weft_stage_description, usb_vendor, 0x1209, 0, 0xffff),
+    WHOLE(weft_stage_description, usb_product, 0xb7f1, 0, 0xffff),
+    TEXT(weft_stage_description, usb_serial, ""),
+    FLAG(weft_stage_description, one_by_one),
     NUMBER(weft_stage_description, tolerance_deg, 0.01, 1e-3, 1),
     NUMBER(weft_stage_description, timeout_s, 0.5, 0.01, 60),
     WHOLE(weft_stage_description, retries, 3, 0, 20),
@@ -97,7 +63,9 @@ static const weft_rig_key stage_keys[] = {
 
 static const weft_rig_key light_keys[] = {
     WORD(weft_light_description, backend, true, NULL, light_words),
-    USB(weft_light_description, 0x16c0, 0x05df),
+    WHOLE(weft_light_description, usb_vendor, 0x16c0, 0, 0xffff),
+    WHOLE(weft_light_description, usb_product, 0x05df, 0, 0xffff),
+    TEXT(weft_light_description, usb_serial, ""),
     TEXT(weft_light_description, lamps, ""),
     NUMBER(weft_light_description, theta_deg, 0, 0, 90),
     NUMBER(weft_light_description, phi_deg, 0, -360, 360),
@@ -113,7 +81,7 @@ static const weft_rig_key camera_keys[] = {
     WORD(weft_camera_description, values, false, "linear", value_words),
     TEXT(weft_camera_description, device, ""),
     TEXT(weft_camera_description, pattern, "*"),
-    {.name = "lens", .kind = WEFT_KEY_TEXT, .offset = offsetof(weft_camera_description, lens), .required = true},
+    KEY(weft_camera_description, lens, .kind = WEFT_KEY_TEXT, .required = true),
     TEXT(weft_camera_description, name, ""),
     TEXT(weft_camera_description, model, ""),
     TEXT(weft_camera_description, colour, ""),

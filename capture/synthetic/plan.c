@@ -1,5 +1,7 @@
 #include "capture/synthetic/plan.h"
 
+#include "capture/virtual/world.h"
+
 #include <stdio.h>
 
 weft_synthetic_request weft_synthetic_request_default(void)
@@ -72,19 +74,11 @@ static weft_pose look_at(weft_vec3 eye, weft_vec3 aim, double phi, double roll, 
     return pose_of_axes(eye, x, y, forward);
 }
 
-static weft_vec3 into_camera(const weft_pose *pose, weft_vec3 p)
-{
-    const double(*r)[3] = pose->rotation;
-    return (weft_vec3){r[0][0] * p.x + r[0][1] * p.y + r[0][2] * p.z + pose->translation.x,
-                       r[1][0] * p.x + r[1][1] * p.y + r[1][2] * p.z + pose->translation.y,
-                       r[2][0] * p.x + r[2][1] * p.y + r[2][2] * p.z + pose->translation.z};
-}
-
 /* How much of the half frame a point needs: 1 at the edge. */
 static double need_of(const weft_synthetic_lens *lens, const weft_pose *pose, weft_vec3 point)
 {
     double pixel[2];
-    if (!weft_synthetic_lens_project(lens, into_camera(pose, point), pixel))
+    if (!weft_synthetic_lens_project(lens, weft_pose_apply(pose, point), pixel))
         return INFINITY;
     return fmax(fabs(2 * pixel[0] / (lens->width - 1) - 1), fabs(2 * pixel[1] / (lens->height - 1) - 1));
 }
@@ -187,21 +181,13 @@ static weft_vec3 hold_lamp(const weft_synthetic_shot *shot, weft_dice *d, double
     return at;
 }
 
-static weft_vec3 from_camera(const weft_pose *pose, weft_vec3 p)
-{
-    const double(*r)[3] = pose->rotation;
-    weft_vec3 q = {r[0][0] * p.x + r[1][0] * p.y + r[2][0] * p.z, r[0][1] * p.x + r[1][1] * p.y + r[2][1] * p.z,
-                   r[0][2] * p.x + r[1][2] * p.y + r[2][2] * p.z};
-    return weft_add(q, weft_pose_camera_position(pose));
-}
-
 /* A flash above the lens and a little aside, as the camera is held level. */
 static weft_synthetic_lamp flash_of(const weft_synthetic_request *request, const weft_synthetic_shot *shot)
 {
     weft_dice d = weft_dice_of(request->seed, -2);
     weft_vec3 offset = {-weft_dice_between(&d, 10, 30), -weft_dice_between(&d, 60, 85), weft_dice_between(&d, -5, 15)};
     const double *f = shot->pose.rotation[2];
-    return (weft_synthetic_lamp){.at = from_camera(&shot->pose, offset),
+    return (weft_synthetic_lamp){.at = weft_pose_apply_inverse(&shot->pose, offset),
                                  .axis = {f[0], f[1], f[2]},
                                  .is_disc = true,
                                  .radius_mm = request->lamp_radius_mm,
@@ -378,7 +364,7 @@ void weft_synthetic_plan(const weft_synthetic_request *request, weft_synthetic_s
 }
 
 weft_synthetic_scene weft_synthetic_scene_of(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                                             const weft_synthetic_sheet *sheet, const weft_synthetic_content *content)
+                                             const weft_synthetic_sheet *sheet, const weft_virtual_sample *content)
 {
     weft_synthetic_scene scene = {.sheet = sheet, .content = content, .lamp = shot->lamp, .gloss = request->gloss};
     scene.window = (weft_synthetic_window){.middle = {-1900, 1500, 700},

@@ -110,7 +110,7 @@ void weft_synthetic_plan(const weft_synthetic_request *request, weft_synthetic_s
 
 /* The scene of a shot. `sheet` is that of its fault: another one where the scene is another. */
 weft_synthetic_scene weft_synthetic_scene_of(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                                             const weft_synthetic_sheet *sheet, const weft_synthetic_content *content);
+                                             const weft_synthetic_sheet *sheet, const weft_virtual_sample *content);
 
 const char *weft_synthetic_fault_name(weft_synthetic_fault fault);
 

@@ -44,11 +44,6 @@ static weft_vec3 turn(const view *v, weft_vec3 d)
     return weft_add(weft_add(weft_scale(v->right, d.x), weft_scale(v->down, d.y)), weft_scale(v->forward, d.z));
 }
 
-static weft_rgb plus(weft_rgb a, weft_rgb b, double scale)
-{
-    return (weft_rgb){a.r + b.r * scale, a.g + b.g * scale, a.b + b.b * scale};
-}
-
 /* ---- Rays ---- */
 
 static double fraction(double x)
@@ -121,10 +116,10 @@ static weft_rgb trace_pixel(const view *v, int x, int y, int ray_count, bool may
         }
         if (traced < FIRST_RAYS)
             green[traced] = seen.g;
-        total = plus(total, seen, 1);
+        total = weft_rgb_add(total, seen);
         traced++;
     }
-    return plus((weft_rgb){0, 0, 0}, total, weft_synthetic_lens_obliquity(v->lens, x, y) / traced);
+    return weft_rgb_scale(total, weft_synthetic_lens_obliquity(v->lens, x, y) / traced);
 }
 
 /* ---- Glints ---- */
@@ -191,7 +186,7 @@ static weft_rgb draw_pixel(const view *v, int x, int y, const block_kind *kind)
         return trace_pixel(v, x, y, SHADOW_RAYS, true, kind);
     weft_vec3 toward_eye = weft_unit(weft_subtract(v->eye, point));
     weft_rgb seen = weft_synthetic_scene_shade(v->scene, point, toward_eye, &(weft_synthetic_chance){{0, 0}, 0, 0}, 0);
-    return plus((weft_rgb){0, 0, 0}, seen, weft_synthetic_lens_vignetting(v->lens, x, y));
+    return weft_rgb_scale(seen, weft_synthetic_lens_vignetting(v->lens, x, y));
 }
 
 /* ---- Blocks ---- */

@@ -3,21 +3,6 @@
 static const double ball_radius = 10, pin_height = 30, pin_radius = 0.4, pin_head_radius = 1.5;
 static const weft_rgb chrome = {0.66, 0.66, 0.67}, steel = {0.35, 0.35, 0.36}, skin = {0.55, 0.37, 0.28};
 
-static weft_rgb scaled(weft_rgb colour, double scale)
-{
-    return (weft_rgb){colour.r * scale, colour.g * scale, colour.b * scale};
-}
-
-static weft_rgb sum(weft_rgb a, weft_rgb b)
-{
-    return (weft_rgb){a.r + b.r, a.g + b.g, a.b + b.b};
-}
-
-static weft_rgb product(weft_rgb a, weft_rgb b)
-{
-    return (weft_rgb){a.r * b.r, a.g * b.g, a.b * b.b};
-}
-
 static weft_rgb grey(double value)
 {
     return (weft_rgb){value, value, value};
@@ -148,7 +133,7 @@ weft_rgb weft_synthetic_scene_illuminance(const weft_synthetic_scene *scene, wef
     weft_vec3 toward;
     double lamp = weft_synthetic_lamp_illuminance(&scene->lamp, point) + mirrored_illuminance(scene, point);
     double window = window_across(scene, point, &toward);
-    return sum(scaled(scene->lamp.colour, lamp), grey(window * fmax(toward.z, 0)));
+    return weft_rgb_add(weft_rgb_scale(scene->lamp.colour, lamp), grey(window * fmax(toward.z, 0)));
 }
 
 /* 1 where the place on the lamp that chance chose sees the point past the solids of `shading`. */
@@ -165,18 +150,18 @@ static double lamp_seen(const weft_synthetic_scene *scene, weft_vec3 point, cons
 static weft_rgb shade_content(const weft_synthetic_scene *scene, weft_vec3 point, weft_vec3 toward_eye,
                               const weft_synthetic_chance *chance, double seen)
 {
-    weft_rgb shade[WEFT_SYNTHETIC_LIGHTS];
+    weft_rgb shade[2];
     double disc[2];
     weft_synthetic_disc(chance->lamp[0], chance->lamp[1], disc);
     weft_vec3 place = weft_synthetic_lamp_place(&scene->lamp, point, disc), d = weft_subtract(scene->lamp.at, point);
-    weft_synthetic_glance glance = {point.x, point.y,     toward_eye,   {weft_unit(weft_subtract(place, point))},
-                                    1,       chance->key, chance->index};
-    double window = window_across(scene, point, &glance.toward_light[1]);
-    glance.light_count = window > 0 && glance.toward_light[1].z > 0 ? 2 : 1;
-    weft_synthetic_content_shade(scene->content, &glance, shade);
+    weft_vec3 toward[2] = {weft_unit(weft_subtract(place, point))};
+    double window = window_across(scene, point, &toward[1]);
+    int lights = window > 0 && toward[1].z > 0 ? 2 : 1;
+    weft_virtual_sample_shade(scene->content, point.x, point.y, toward, lights, toward_eye, chance->key, chance->index,
+                              shade);
     double across = weft_synthetic_lamp_toward(&scene->lamp, point) / (weft_dot(d, d) * 1e-6);
-    weft_rgb light = product(shade[0], scaled(scene->lamp.colour, seen * across / WEFT_PI));
-    return glance.light_count == 2 ? sum(light, scaled(shade[1], window / WEFT_PI)) : light;
+    weft_rgb light = weft_rgb_multiply(shade[0], weft_rgb_scale(scene->lamp.colour, seen * across / WEFT_PI));
+    return lights == 2 ? weft_rgb_add(light, weft_rgb_scale(shade[1], window / WEFT_PI)) : light;
 }
 
 /* The highlight of Ward (1992), isotropic, of slope 0.25: what office paper shows against the light. */
@@ -198,7 +183,7 @@ static weft_rgb shade_sheet(const weft_synthetic_scene *scene, weft_vec3 point, 
     double diffuse = reflectance * (lamp + mirrored_illuminance(scene, point));
     double shine = lamp * print_highlight(scene, point, toward_eye);
     double window = window_across(scene, point, &toward) * reflectance * fmax(toward.z, 0);
-    return scaled(sum(scaled(scene->lamp.colour, diffuse + shine), grey(window)), 1 / WEFT_PI);
+    return weft_rgb_scale(weft_rgb_add(weft_rgb_scale(scene->lamp.colour, diffuse + shine), grey(window)), 1 / WEFT_PI);
 }
 
 weft_rgb weft_synthetic_scene_shade(const weft_synthetic_scene *scene, weft_vec3 point, weft_vec3 toward_eye,
@@ -219,11 +204,11 @@ static weft_rgb shade_solid(const weft_synthetic_scene *scene, const weft_synthe
     double lamp = cosine > 0 ? weft_synthetic_lamp_toward(&scene->lamp, point) * cosine / (squared * 1e-6) : 0;
     if (lamp > 0)
         lamp *= lamp_seen(scene, above, chance, WEFT_SYNTHETIC_ALL_SOLIDS);
-    weft_rgb light = scaled(scene->lamp.colour, lamp);
+    weft_rgb light = weft_rgb_scale(scene->lamp.colour, lamp);
     /* What the sheet below sends up. */
-    weft_rgb below =
-        scaled(weft_synthetic_scene_illuminance(scene, weft_vec3_of(point.x, point.y, 0)), 0.4 * (1 - normal.z));
-    return scaled(product(solid->reflectance, sum(light, below)), 1 / WEFT_PI);
+    weft_rgb below = weft_rgb_scale(weft_synthetic_scene_illuminance(scene, weft_vec3_of(point.x, point.y, 0)),
+                                    0.4 * (1 - normal.z));
+    return weft_rgb_scale(weft_rgb_multiply(solid->reflectance, weft_rgb_add(light, below)), 1 / WEFT_PI);
 }
 
 static weft_rgb look_at_room(const weft_synthetic_scene *scene, weft_vec3 from, weft_vec3 along)
@@ -250,7 +235,7 @@ static weft_rgb look(const weft_synthetic_scene *scene, weft_vec3 from, weft_vec
     int solid = first_solid(scene, may_meet, from, along, &distance, &normal);
     double to_lamp = weft_synthetic_lamp_meet(&scene->lamp, from, along);
     if (to_lamp > 0 && to_lamp < to_plane && (solid < 0 || to_lamp < distance))
-        return scaled(scene->lamp.colour, weft_synthetic_lamp_luminance(&scene->lamp));
+        return weft_rgb_scale(scene->lamp.colour, weft_synthetic_lamp_luminance(&scene->lamp));
     if (solid < 0 || distance > to_plane) {
         if (!isfinite(to_plane))
             return look_at_room(scene, from, along);
@@ -265,8 +250,8 @@ static weft_rgb look(const weft_synthetic_scene *scene, weft_vec3 from, weft_vec
     if (mirrors == 0)
         return grey(scene->wall_luminance);
     weft_vec3 mirrored = weft_subtract(along, weft_scale(normal, 2 * weft_dot(along, normal)));
-    return product(met->reflectance, look(scene, at, mirrored, chance, WEFT_SYNTHETIC_ALL_SOLIDS,
-                                          WEFT_SYNTHETIC_ALL_SOLIDS, mirrors - 1));
+    return weft_rgb_multiply(met->reflectance, look(scene, at, mirrored, chance, WEFT_SYNTHETIC_ALL_SOLIDS,
+                                                    WEFT_SYNTHETIC_ALL_SOLIDS, mirrors - 1));
 }
 
 weft_rgb weft_synthetic_scene_look(const weft_synthetic_scene *scene, weft_vec3 from, weft_vec3 along,

@@ -33,7 +33,7 @@ static void shake(const float *still, int width, int height, float *shaken)
 }
 
 static weft_code light_sensor(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                              const weft_synthetic_content *content, weft_image *light, weft_error *error)
+                              const weft_virtual_sample *content, weft_image *light, weft_error *error)
 {
     weft_synthetic_sheet *sheet = malloc(sizeof *sheet);
     if (!sheet)
@@ -85,7 +85,7 @@ static weft_code develop(const weft_synthetic_request *request, const weft_synth
 }
 
 weft_code weft_synthetic_take(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                              const weft_synthetic_content *content, weft_image *image, weft_error *error)
+                              const weft_virtual_sample *content, weft_image *image, weft_error *error)
 {
     weft_image light = {0};
     WEFT_TRY(weft_image_create(shot->lens.width, shot->lens.height, image, error));
@@ -134,7 +134,7 @@ static weft_code write_photograph(const weft_synthetic_request *request, const w
 }
 
 static weft_code take_all(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                          const weft_synthetic_content *content, const weft_progress *progress, weft_error *error)
+                          const weft_virtual_sample *content, const weft_progress *progress, weft_error *error)
 {
     for (int i = 0; i < request->photograph_count; i++) {
         weft_image image = {0};
@@ -148,7 +148,7 @@ static weft_code take_all(const weft_synthetic_request *request, const weft_synt
 }
 
 static weft_code take_and_tell(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                               const weft_synthetic_content *content, const weft_progress *progress, weft_error *error)
+                               const weft_virtual_sample *content, const weft_progress *progress, weft_error *error)
 {
     WEFT_TRY(make_empty_folder(request->folder, error));
     WEFT_TRY(weft_synthetic_truth_write(request, shot, error));
@@ -159,12 +159,23 @@ static weft_code take_and_tell(const weft_synthetic_request *request, const weft
     return WEFT_OK;
 }
 
+static weft_code read_content(const weft_synthetic_request *request, weft_virtual_sample *content,
+                              char warning[WEFT_MESSAGE_SIZE], weft_error *error)
+{
+    weft_virtual_settings settings = weft_virtual_settings_default();
+    settings.rig.opening_mm = request->opening_mm;
+    *content = (weft_virtual_sample){.opening_mm = request->opening_mm, .is_checker = true};
+    warning[0] = '\0';
+    return strcmp(request->content, "checker") == 0
+               ? WEFT_OK
+               : weft_virtual_sample_read(request->content, &settings, request->seed, content, warning, error);
+}
+
 weft_code weft_synthetic_run(const weft_synthetic_request *request, const weft_progress *progress,
                              char warning[WEFT_MESSAGE_SIZE], weft_error *error)
 {
-    weft_synthetic_content content;
-    WEFT_TRY(
-        weft_synthetic_content_read(request->content, request->opening_mm, request->seed, &content, warning, error));
+    weft_virtual_sample content;
+    WEFT_TRY(read_content(request, &content, warning, error));
     weft_synthetic_shot *shot = calloc((size_t)request->photograph_count, sizeof *shot);
     weft_code code = shot ? WEFT_OK : weft_fail_memory(error, "a plan", sizeof *shot);
     if (code == WEFT_OK) {
@@ -172,6 +183,6 @@ weft_code weft_synthetic_run(const weft_synthetic_request *request, const weft_p
         code = take_and_tell(request, shot, &content, progress, error);
     }
     free(shot);
-    weft_synthetic_content_free(&content);
+    weft_virtual_sample_free(&content);
     return code;
 }

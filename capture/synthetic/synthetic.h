@@ -11,19 +11,16 @@
 
 /* One photograph as the file holds it, 0..1; the caller frees it. Parallel. Errors: WEFT_SYSTEM. */
 weft_code weft_synthetic_take(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                              const weft_synthetic_content *content, weft_image *image, weft_error *error);
+                              const weft_virtual_sample *content, weft_image *image, weft_error *error);
 
 /* Writes all photographs into the folder of the request, and the truth beside it: FOLDER.truth.json and, for a
  * truth_size above 0, FOLDER.truth.btf.h5; FOLDER.lp for a tripod and FOLDER.steps.csv for a table. The same request
- * gives the same bytes, for any number of threads. `warning` as weft_synthetic_content_read. Errors: WEFT_BAD_USAGE for
- * a folder that holds something; those of weft_synthetic_content_read; WEFT_SYSTEM. */
+ * gives the same bytes, for any number of threads. `warning` as weft_virtual_sample_read. Errors: WEFT_BAD_USAGE for
+ * a folder that holds something; those of weft_virtual_sample_read; WEFT_SYSTEM. */
 weft_code weft_synthetic_run(const weft_synthetic_request *request, const weft_progress *progress,
                              char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 
 /* ---- The truth beside a folder of photographs: what registration must find, in files that it never reads. ---- */
-
-/* FOLDER and an ending, whether or not the folder was written with a slash behind it. */
-void weft_synthetic_beside(const char *folder, const char *ending, char path[PATH_MAX]);
 
 /* FOLDER.truth.json: docs/reference/synthetic.md. Errors: WEFT_SYSTEM. */
 weft_code weft_synthetic_truth_write(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
@@ -32,7 +29,7 @@ weft_code weft_synthetic_truth_write(const weft_synthetic_request *request, cons
 /* FOLDER.truth.btf.h5: the true reflectance of the content under the lamp and the camera of every photograph, as near
  * positions; the images of rubbish are masked. Parallel. Errors: WEFT_SYSTEM. */
 weft_code weft_synthetic_truth_write_reflectance(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                                                 const weft_synthetic_content *content, const weft_progress *progress,
+                                                 const weft_virtual_sample *content, const weft_progress *progress,
                                                  weft_error *error);
 
 /* What a person would note down. Of a tripod FOLDER.lp: the number of photographs, then a line for each, its name and

@@ -3,96 +3,55 @@
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
+#include "capture/virtual/ground_truth.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-void weft_synthetic_beside(const char *folder, const char *ending, char path[PATH_MAX])
-{
-    size_t length = strlen(folder);
-    while (length > 1 && folder[length - 1] == '/')
-        length--;
-    snprintf(path, PATH_MAX, "%.*s%s", (int)length, folder, ending);
-}
-
 /* ---- JSON ---- */
-
-static json_t *list_of(const double *number, int count)
-{
-    json_t *list = json_array();
-    for (int i = 0; i < count; i++)
-        weft_json_append(&list, json_real(number[i]));
-    return list;
-}
 
 static json_t *vector_of(weft_vec3 v)
 {
-    return list_of((const double[3]){v.x, v.y, v.z}, 3);
+    return json_pack("[fff]", v.x, v.y, v.z);
 }
 
 static json_t *lens_json(const weft_synthetic_lens *lens)
 {
-    json_t *root = json_object();
-    weft_json_put(&root, "width", json_integer(lens->width));
-    weft_json_put(&root, "height", json_integer(lens->height));
-    weft_json_put(&root, "sensor_width_mm", json_real(lens->sensor_width_mm));
-    weft_json_put(&root, "focal_length_mm", json_real(lens->focal_length_mm));
-    weft_json_put(&root, "axis_px", list_of((const double[2]){lens->axis_x, lens->axis_y}, 2));
-    weft_json_put(&root, "division", list_of(lens->division, 2));
-    weft_json_put(&root, "rim_mm", json_real(lens->rim_mm));
-    weft_json_put(&root, "rim_radius_mm", json_real(lens->rim_radius_mm));
-    return root;
+    return json_pack("{si si sf sf s[ff] s[ff] sf sf}", "width", lens->width, "height", lens->height, "sensor_width_mm",
+                     lens->sensor_width_mm, "focal_length_mm", lens->focal_length_mm, "axis_px", lens->axis_x,
+                     lens->axis_y, "division", lens->division[0], lens->division[1], "rim_mm", lens->rim_mm,
+                     "rim_radius_mm", lens->rim_radius_mm);
 }
 
 static json_t *pose_json(const weft_pose *pose)
 {
-    json_t *root = json_object(), *rows = json_array();
-    for (int i = 0; i < 3; i++)
-        weft_json_append(&rows, list_of(pose->rotation[i], 3));
-    weft_json_put(&root, "rotation", rows);
-    weft_json_put(&root, "translation_mm", vector_of(pose->translation));
-    weft_json_put(&root, "camera_mm", vector_of(weft_pose_camera_position(pose)));
-    return root;
+    const double(*r)[3] = pose->rotation;
+    return json_pack("{s[[fff][fff][fff]] so so}", "rotation", r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2],
+                     r[2][0], r[2][1], r[2][2], "translation_mm", vector_of(pose->translation), "camera_mm",
+                     vector_of(weft_pose_camera_position(pose)));
 }
 
 static json_t *lamp_json(const weft_synthetic_lamp *lamp)
 {
-    json_t *root = json_object();
-    weft_json_put(&root, "shape", json_string(lamp->is_disc ? "disc" : "ball"));
-    weft_json_put(&root, "at_mm", vector_of(lamp->at));
-    weft_json_put(&root, "axis", vector_of(lamp->axis));
-    weft_json_put(&root, "radius_mm", json_real(lamp->radius_mm));
-    weft_json_put(&root, "intensity_cd", json_real(lamp->intensity_cd));
-    weft_json_put(&root, "colour", list_of(&lamp->colour.r, 3));
-    return root;
+    return json_pack("{ss so so sf sf s[fff]}", "shape", lamp->is_disc ? "disc" : "ball", "at_mm", vector_of(lamp->at),
+                     "axis", vector_of(lamp->axis), "radius_mm", lamp->radius_mm, "intensity_cd", lamp->intensity_cd,
+                     "colour", lamp->colour.r, lamp->colour.g, lamp->colour.b);
 }
 
 static json_t *exposure_json(const weft_synthetic_exposure *e)
 {
-    json_t *root = json_object();
-    weft_json_put(&root, "seconds", json_real(e->seconds));
-    weft_json_put(&root, "f_number", json_real(e->f_number));
-    weft_json_put(&root, "iso", json_real(e->iso));
-    weft_json_put(&root, "gain", json_real(e->gain));
-    weft_json_put(&root, "white_balance", list_of(e->white_balance, 3));
-    return root;
+    return json_pack("{sf sf sf sf s[fff]}", "seconds", e->seconds, "f_number", e->f_number, "iso", e->iso, "gain",
+                     e->gain, "white_balance", e->white_balance[0], e->white_balance[1], e->white_balance[2]);
 }
 
 static json_t *shot_json(const weft_synthetic_shot *shot)
 {
-    json_t *root = json_object();
-    weft_json_put(&root, "name", json_string(shot->name));
-    weft_json_put(&root, "fault", json_string(weft_synthetic_fault_name(shot->fault)));
-    weft_json_put(&root, "hand_shadow", json_boolean(shot->hand_shadow));
-    weft_json_put(&root, "orientation", json_integer(shot->orientation));
-    weft_json_put(&root, "pose", pose_json(&shot->pose));
-    weft_json_put(&root, "image_distance_mm", json_real(shot->lens.image_distance_mm));
-    weft_json_put(&root, "focus_mm", json_real(shot->lens.focus_mm));
-    weft_json_put(&root, "pupil_radius_mm", json_real(shot->lens.pupil_radius_mm));
-    weft_json_put(&root, "lamp", lamp_json(&shot->lamp));
-    weft_json_put(&root, "exposure", exposure_json(&shot->exposure));
-    return root;
+    return json_pack(
+        "{ss ss sb si so sf sf sf so so}", "name", shot->name, "fault", weft_synthetic_fault_name(shot->fault),
+        "hand_shadow", shot->hand_shadow, "orientation", shot->orientation, "pose", pose_json(&shot->pose),
+        "image_distance_mm", shot->lens.image_distance_mm, "focus_mm", shot->lens.focus_mm, "pupil_radius_mm",
+        shot->lens.pupil_radius_mm, "lamp", lamp_json(&shot->lamp), "exposure", exposure_json(&shot->exposure));
 }
 
 /* The tone curve at linear = i / 1024. */
@@ -111,28 +70,21 @@ static json_t *tone_json(const weft_synthetic_request *request)
 static json_t *truth_json(const weft_synthetic_request *request, const weft_synthetic_shot *shot)
 {
     static const char *const set[] = {"free", "flash", "tripod", "stepped"};
-    json_t *root = json_object(), *photographs = json_array();
-    weft_json_put(&root, "set", json_string(set[request->set]));
-    weft_json_put(&root, "content", weft_json_text(request->content, strlen(request->content)));
-    weft_json_put(&root, "seed", json_integer((json_int_t)request->seed));
-    weft_json_put(&root, "opening_mm", json_real(request->opening_mm));
-    weft_json_put(&root, "balls", json_boolean(!request->no_balls));
-    weft_json_put(&root, "pin", json_boolean(!request->no_pin));
-    weft_json_put(&root, "window_cd_m2", json_real(request->window));
-    weft_json_put(&root, "gloss", json_real(request->gloss));
-    weft_json_put(&root, "lens", lens_json(&shot[0].lens));
+    json_t *photographs = json_array();
     for (int i = 0; i < request->photograph_count; i++)
         weft_json_append(&photographs, shot_json(&shot[i]));
-    weft_json_put(&root, "photographs", photographs);
-    weft_json_put(&root, "tone", tone_json(request));
-    return root;
+    return json_pack("{ss so sI sf sb sb sf sf so so so}", "set", set[request->set], "content",
+                     weft_json_text(request->content, strlen(request->content)), "seed", (json_int_t)request->seed,
+                     "opening_mm", request->opening_mm, "balls", !request->no_balls, "pin", !request->no_pin,
+                     "window_cd_m2", request->window, "gloss", request->gloss, "lens", lens_json(&shot[0].lens),
+                     "photographs", photographs, "tone", tone_json(request));
 }
 
 weft_code weft_synthetic_truth_write(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
                                      weft_error *error)
 {
     char path[PATH_MAX];
-    weft_synthetic_beside(request->folder, ".truth.json", path);
+    weft_beside_folder(request->folder, ".truth.json", path);
     json_t *root = truth_json(request, shot);
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(12)) : NULL;
     json_decref(root);
@@ -181,7 +133,7 @@ weft_code weft_synthetic_write_notes(const weft_synthetic_request *request, cons
     size_t size = 0;
     if (request->set != WEFT_SYNTHETIC_TRIPOD && request->set != WEFT_SYNTHETIC_STEPPED)
         return WEFT_OK;
-    weft_synthetic_beside(request->folder, request->set == WEFT_SYNTHETIC_TRIPOD ? ".lp" : ".steps.csv", path);
+    weft_beside_folder(request->folder, request->set == WEFT_SYNTHETIC_TRIPOD ? ".lp" : ".steps.csv", path);
     FILE *stream = open_memstream(&text, &size);
     if (!stream)
         return weft_fail_memory(error, path, 0);
@@ -204,14 +156,14 @@ static void fill_layout(const weft_synthetic_request *request, const weft_synthe
     }
 }
 
-static void fill_image(const weft_synthetic_content *content, const weft_synthetic_shot *shot, int size,
+static void fill_image(const weft_virtual_sample *content, const weft_synthetic_shot *shot, int size,
                        weft_half *samples)
 {
     weft_vec3 camera = weft_pose_camera_position(&shot->pose);
 #pragma omp parallel for schedule(dynamic, 1)
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
-            weft_rgb value = weft_synthetic_content_truth(content, size, x, y, shot->lamp.at, camera);
+            weft_rgb value = weft_truth_reflectance(content, size, x, y, shot->lamp.at, camera);
             weft_half *texel = samples + 3 * ((size_t)y * (size_t)size + (size_t)x);
             texel[0] = weft_half_of_float((float)value.r);
             texel[1] = weft_half_of_float((float)value.g);
@@ -221,7 +173,7 @@ static void fill_image(const weft_synthetic_content *content, const weft_synthet
 }
 
 static weft_code put_images(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                            const weft_synthetic_content *content, weft_dataset_writer *writer,
+                            const weft_virtual_sample *content, weft_dataset_writer *writer,
                             const weft_progress *progress, weft_error *error)
 {
     size_t size = (size_t)request->truth_size;
@@ -241,12 +193,12 @@ static weft_code put_images(const weft_synthetic_request *request, const weft_sy
 }
 
 static weft_code write_dataset(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                               const weft_synthetic_content *content, const weft_dataset_layout *layout,
+                               const weft_virtual_sample *content, const weft_dataset_layout *layout,
                                const weft_progress *progress, weft_error *error)
 {
     char path[PATH_MAX];
     weft_dataset_writer *writer;
-    weft_synthetic_beside(request->folder, ".truth.btf.h5", path);
+    weft_beside_folder(request->folder, ".truth.btf.h5", path);
     WEFT_TRY(weft_dataset_writer_create(path, layout, &writer, error));
     weft_code code = put_images(request, shot, content, writer, progress, error);
     if (code != WEFT_OK) {
@@ -257,7 +209,7 @@ static weft_code write_dataset(const weft_synthetic_request *request, const weft
 }
 
 weft_code weft_synthetic_truth_write_reflectance(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                                                 const weft_synthetic_content *content, const weft_progress *progress,
+                                                 const weft_virtual_sample *content, const weft_progress *progress,
                                                  weft_error *error)
 {
     weft_dataset_layout layout = {.width = request->truth_size,

@@ -51,8 +51,7 @@ weft_rgb weft_truth_reflectance(const weft_virtual_sample *sample, int size, int
         weft_rgb value = weft_virtual_sample_reflect(sample, x_mm, y_mm, weft_unit(weft_subtract(light, at)),
                                                      weft_unit(weft_subtract(camera, at)),
                                                      (uint64_t)y * (uint64_t)size + (uint64_t)x, (uint32_t)i);
-        sum = (weft_rgb){sum.r + value.r, sum.g + value.g, sum.b + value.b};
+        sum = weft_rgb_add(sum, value);
     }
-    double mean = 1.0 / (SAMPLES * SAMPLES);
-    return (weft_rgb){sum.r * mean, sum.g * mean, sum.b * mean};
+    return weft_rgb_scale(sum, 1.0 / (SAMPLES * SAMPLES));
 }

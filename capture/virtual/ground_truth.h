@@ -5,11 +5,16 @@
 #include "base/progress.h"
 #include "capture/virtual/virtual_rig.h"
 
+#include <limits.h>
+
 typedef struct weft_truth_request {
     const char *path; /* HDF5 file (docs/reference/session-format.md); NULL = FOLDER.truth.h5 */
     int size;         /* texels along a side */
     int image_count;  /* shots whose reflectance is computed */
 } weft_truth_request;
+
+/* FOLDER and an ending, whether or not the folder was written with a slash behind it. */
+void weft_beside_folder(const char *folder, const char *ending, char path[PATH_MAX]);
 
 /* Whether the file can be written where it is asked for, before there is anything to write. Errors: WEFT_BAD_USAGE,
  * WEFT_SYSTEM. */

@@ -134,7 +134,7 @@ static bool write_arrays(hid_t file, const truth *t)
     return write_array(file, "rotation", H5T_NATIVE_DOUBLE, 3, rotation, t->rotation) &&
            write_array(file, "translation_mm", H5T_NATIVE_DOUBLE, 2, translation, t->translation_mm) &&
            write_array(file, "light_mm", H5T_NATIVE_DOUBLE, 2, light, t->light_mm) &&
-           write_array(file, "stay", H5T_NATIVE_INT, 1, &shots, t->viewpoint) &&
+           write_array(file, "viewpoint", H5T_NATIVE_INT, 1, &shots, t->viewpoint) &&
            write_array(file, "image_shot", H5T_NATIVE_INT, 1, &images, t->image_shot) &&
            write_array(file, "reflectance", H5T_NATIVE_FLOAT, 4, reflectance, t->reflectance);
 }
@@ -187,17 +187,21 @@ static weft_code write_file(const char *path, const weft_camera *camera, double 
     return code;
 }
 
-/* The path asked for, else FOLDER.truth.h5, whether or not the folder was written with a slash behind it. */
-static void choose_path(const weft_truth_request *request, const char *folder, char path[PATH_MAX])
+void weft_beside_folder(const char *folder, const char *ending, char path[PATH_MAX])
 {
     size_t length = strlen(folder);
-    if (request->path) {
-        snprintf(path, PATH_MAX, "%s", request->path);
-        return;
-    }
     while (length > 1 && folder[length - 1] == '/')
         length--;
-    snprintf(path, PATH_MAX, "%.*s.truth.h5", (int)length, folder);
+    snprintf(path, PATH_MAX, "%.*s%s", (int)length, folder, ending);
+}
+
+/* The path asked for, else FOLDER.truth.h5. */
+static void choose_path(const weft_truth_request *request, const char *folder, char path[PATH_MAX])
+{
+    if (request->path)
+        snprintf(path, PATH_MAX, "%s", request->path);
+    else
+        weft_beside_folder(folder, ".truth.h5", path);
 }
 
 weft_code weft_truth_check_path(const weft_truth_request *request, const weft_session *session, weft_error *error)

@@ -4,14 +4,21 @@
 
 #include <string.h>
 
-weft_code weft_virtual_cloth_read(const char *path, const weft_virtual_settings *settings, uint64_t seed,
-                                  weft_virtual_cloth *cloth, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
+static void free_cloth(weft_virtual_cloth *cloth)
+{
+    weft_woven_table_free(cloth->table);
+    weft_weave_free(&cloth->weave);
+    *cloth = (weft_virtual_cloth){0};
+}
+
+static weft_code read_cloth(const char *path, const weft_virtual_settings *settings, uint64_t seed,
+                            weft_virtual_cloth *cloth, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
 {
     *cloth = (weft_virtual_cloth){.opening_mm = settings->rig.opening_mm};
     WEFT_TRY(weft_weave_read(path, NULL, 0, &cloth->weave, warning, error));
     weft_code code = weft_woven_table_create(&cloth->weave, &cloth->table, error);
     if (code != WEFT_OK) {
-        weft_virtual_cloth_free(cloth);
+        free_cloth(cloth);
         return code;
     }
     weft_weave_layout layout = weft_weave_whole_tiles(&cloth->weave);
@@ -20,13 +27,6 @@ weft_code weft_virtual_cloth_read(const char *path, const weft_virtual_settings 
     if (settings->cloth_noise > 0)
         cloth->noise_seed = weft_random_bits(seed, WEFT_RANDOM_CLOTH, 0) | 1;
     return WEFT_OK;
-}
-
-void weft_virtual_cloth_free(weft_virtual_cloth *cloth)
-{
-    weft_woven_table_free(cloth->table);
-    weft_weave_free(&cloth->weave);
-    *cloth = (weft_virtual_cloth){0};
 }
 
 weft_weave_point weft_virtual_cloth_locate(const weft_virtual_cloth *cloth, double x_mm, double y_mm)
@@ -48,7 +48,7 @@ weft_code weft_virtual_sample_read(const char *path, const weft_virtual_settings
 {
     *sample = (weft_virtual_sample){.opening_mm = settings->rig.opening_mm};
     if (!is_stitch(path))
-        return weft_virtual_cloth_read(path, settings, seed, &sample->flat, warning, error);
+        return read_cloth(path, settings, seed, &sample->flat, warning, error);
     warning[0] = '\0';
     if (settings->tiles_x > 0 || settings->tiles_y > 0)
         return weft_fail(error, WEFT_BAD_INPUT,
@@ -58,7 +58,7 @@ weft_code weft_virtual_sample_read(const char *path, const weft_virtual_settings
 
 void weft_virtual_sample_free(weft_virtual_sample *sample)
 {
-    weft_virtual_cloth_free(&sample->flat);
+    free_cloth(&sample->flat);
     weft_stitch_sample_free(sample->deep);
     *sample = (weft_virtual_sample){0};
 }
@@ -75,21 +75,67 @@ int weft_virtual_sample_see(const weft_virtual_sample *sample, double x_mm, doub
     return weft_stitch_sample_see(sample->deep, x_mm + half, y_mm + half, view, key, index, vertex);
 }
 
-static weft_rgb reflect_from_depth(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 light,
-                                   weft_vec3 view, uint64_t key, uint32_t index)
+/* ---- The checker ---- */
+
+static int check_of(double opening_mm, double at_mm)
+{
+    enum { CHECKS = 4 };
+    double at = floor((at_mm / opening_mm + 0.5) * CHECKS);
+    return (int)weft_clamp(at, 0, CHECKS - 1);
+}
+
+static double check_grey(int number)
+{
+    return 0.10 + 0.75 * (number % 7) / 6;
+}
+
+/* pi BRDF. */
+static weft_rgb reflect_from_checker(double opening_mm, double x_mm, double y_mm, weft_vec3 light, weft_vec3 view)
+{
+    const double gloss = 0.15, exponent = 40, diffuse = 0.2;
+    int i = check_of(opening_mm, x_mm), j = check_of(opening_mm, y_mm);
+    if (i != 1 || j != 2)
+        return (weft_rgb){check_grey(5 * i + 3 * j), check_grey(3 * i + 5 * j), check_grey(2 * i + 6 * j)};
+    double half = fmax(weft_unit(weft_add(light, view)).z, 0);
+    double value = diffuse + gloss * (exponent + 8) / 8 * pow(half, exponent);
+    return (weft_rgb){value, value, value};
+}
+
+/* ---- Shading ---- */
+
+static void shade_deep(const weft_virtual_sample *sample, double x_mm, double y_mm, const weft_vec3 *light, int count,
+                       weft_vec3 view, uint64_t key, uint32_t index, weft_rgb *shade)
 {
     weft_seen_vertex vertex[1 + WEFT_STITCH_SAMPLE_MAX_BOUNCES];
-    int count = weft_virtual_sample_see(sample, x_mm, y_mm, view, key, index, vertex);
-    return weft_stitch_sample_light(sample->deep, vertex, count, light);
+    int vertices = weft_virtual_sample_see(sample, x_mm, y_mm, view, key, index, vertex);
+    for (int i = 0; i < count; i++)
+        shade[i] = weft_stitch_sample_light(sample->deep, vertex, vertices, light[i]);
+}
+
+static void shade_flat(const weft_virtual_cloth *cloth, double x_mm, double y_mm, const weft_vec3 *light, int count,
+                       weft_vec3 view, weft_rgb *shade)
+{
+    weft_weave_point point = weft_virtual_cloth_locate(cloth, x_mm, y_mm);
+    for (int i = 0; i < count; i++)
+        shade[i] = weft_rgb_scale(weft_weave_brdf(&cloth->weave, &point, light[i], view), WEFT_PI * light[i].z);
+}
+
+void weft_virtual_sample_shade(const weft_virtual_sample *sample, double x_mm, double y_mm, const weft_vec3 *light,
+                               int count, weft_vec3 view, uint64_t key, uint32_t index, weft_rgb *shade)
+{
+    if (sample->deep)
+        shade_deep(sample, x_mm, y_mm, light, count, view, key, index, shade);
+    else if (!sample->is_checker)
+        shade_flat(&sample->flat, x_mm, y_mm, light, count, view, shade);
+    for (int i = 0; sample->is_checker && i < count; i++)
+        shade[i] =
+            weft_rgb_scale(reflect_from_checker(sample->opening_mm, x_mm, y_mm, light[i], view), fmax(light[i].z, 0));
 }
 
 weft_rgb weft_virtual_sample_reflect(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 light,
                                      weft_vec3 view, uint64_t key, uint32_t index)
 {
-    if (sample->deep)
-        return reflect_from_depth(sample, x_mm, y_mm, light, view, key, index);
-    weft_weave_point point = weft_virtual_cloth_locate(&sample->flat, x_mm, y_mm);
-    weft_rgb brdf = weft_weave_brdf(&sample->flat.weave, &point, light, view);
-    double scale = WEFT_PI * light.z;
-    return (weft_rgb){brdf.r * scale, brdf.g * scale, brdf.b * scale};
+    weft_rgb shade;
+    weft_virtual_sample_shade(sample, x_mm, y_mm, &light, 1, view, key, index, &shade);
+    return shade;
 }

@@ -29,7 +29,8 @@ typedef struct weft_virtual_settings {
     double principal_point_error_px;
     double k1_error; /* relative */
     double mounting_rotation_deg, mounting_translation_mm;
-    double stay_rotation_deg, stay_translation_mm; /* standard deviation per axis, drawn anew for every stay */
+    double viewpoint_rotation_deg,
+        viewpoint_translation_mm; /* standard deviation per axis, drawn anew for every viewpoint */
     double axes; /* 1 = an arm on a ring turns the camera, with what follows; 0 = it is wherever it is sent */
     double axis_tilt_deg, axis_offset_mm; /* by which the line of each axis is off */
     double axis_zero_deg, axis_scale;     /* of the scale of each axis: its zero, and its length, relative */

@@ -1,10 +1,11 @@
 #include "capture/virtual/world.h"
 
+#include "btf/session/rig_poses.h"
 #include "capture/virtual/random.h"
 
 #include <math.h>
 
-static weft_vec3 apply(const weft_pose *pose, weft_vec3 p)
+weft_vec3 weft_pose_apply(const weft_pose *pose, weft_vec3 p)
 {
     const double(*r)[3] = pose->rotation;
     weft_vec3 rotated = {r[0][0] * p.x + r[0][1] * p.y + r[0][2] * p.z, r[1][0] * p.x + r[1][1] * p.y + r[1][2] * p.z,
@@ -12,7 +13,7 @@ static weft_vec3 apply(const weft_pose *pose, weft_vec3 p)
     return weft_add(rotated, pose->translation);
 }
 
-static weft_vec3 apply_inverse(const weft_pose *pose, weft_vec3 p)
+weft_vec3 weft_pose_apply_inverse(const weft_pose *pose, weft_vec3 p)
 {
     const double(*r)[3] = pose->rotation;
     weft_vec3 d = weft_subtract(p, pose->translation);
@@ -29,21 +30,6 @@ static weft_pose pose_of_vectors(weft_vec3 vector, weft_vec3 translation)
                         {k.y * k.x * (1 - c) + k.z * s, c + k.y * k.y * (1 - c), k.y * k.z * (1 - c) - k.x * s},
                         {k.z * k.x * (1 - c) - k.y * s, k.z * k.y * (1 - c) + k.x * s, c + k.z * k.z * (1 - c)}},
                        translation};
-}
-
-/* outer o inner: what `inner` maps first. */
-static weft_pose compose(const weft_pose *outer, const weft_pose *inner)
-{
-    weft_pose result;
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 3; column++) {
-            result.rotation[row][column] = 0;
-            for (int k = 0; k < 3; k++)
-                result.rotation[row][column] += outer->rotation[row][k] * inner->rotation[k][column];
-        }
-    }
-    result.translation = apply(outer, inner->translation);
-    return result;
 }
 
 weft_virtual_world weft_virtual_world_of_camera(const weft_virtual_settings *settings, uint64_t seed, int index)
@@ -70,23 +56,18 @@ weft_virtual_world weft_virtual_world_of_camera(const weft_virtual_settings *set
     return world;
 }
 
-weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, uint64_t seed)
-{
-    return weft_virtual_world_of_camera(settings, seed, 0);
-}
-
 weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles view, int viewpoint)
 {
     const weft_virtual_settings *s = &world->settings;
     uint64_t index = 2 * (uint64_t)viewpoint;
     weft_vec3 turn = weft_random_normal3(world->camera_seed, WEFT_RANDOM_VIEWPOINT, index);
     weft_vec3 shift = weft_random_normal3(world->camera_seed, WEFT_RANDOM_VIEWPOINT, index + 1);
-    weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
-                                      weft_scale(shift, s->stay_translation_mm));
+    weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->viewpoint_rotation_deg)),
+                                      weft_scale(shift, s->viewpoint_translation_mm));
     weft_pose nominal = s->axes != 0 ? weft_virtual_goniometer_pose(s, world->camera_seed, view)
                                      : weft_pose_of_view(view, s->rig.camera_distance_mm);
-    weft_pose in_rig = compose(&nominal, &error);
-    return compose(&in_rig, &world->mounting);
+    weft_pose in_rig = weft_pose_after(&nominal, &error);
+    return weft_pose_after(&in_rig, &world->mounting);
 }
 
 /* A number for a viewpoint and a commanded direction, insensitive to the last digits of a stored angle. */
@@ -104,8 +85,8 @@ weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles 
     weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_LIGHT, index);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->light_rotation_deg)), (weft_vec3){0, 0, 0});
     weft_vec3 nominal = weft_scale(weft_direction_of_angles(driven), s->rig.light_distance_mm);
-    weft_vec3 in_rig = apply(&error, nominal);
-    return apply_inverse(&world->mounting, in_rig);
+    weft_vec3 in_rig = weft_pose_apply(&error, nominal);
+    return weft_pose_apply_inverse(&world->mounting, in_rig);
 }
 
 bool weft_virtual_world_shadowed(const weft_virtual_world *world, const weft_pose *pose, weft_vec3 light)

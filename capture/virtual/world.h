@@ -7,6 +7,10 @@
 
 #include "capture/virtual/virtual_settings.h"
 
+/* A point of the plate in the frame of a camera, and back. Pure. */
+weft_vec3 weft_pose_apply(const weft_pose *pose, weft_vec3 point);
+weft_vec3 weft_pose_apply_inverse(const weft_pose *pose, weft_vec3 point);
+
 typedef struct weft_virtual_world {
     weft_virtual_settings settings;
     uint64_t seed;        /* of what all cameras share: plate, sample and lamps */
@@ -18,9 +22,6 @@ typedef struct weft_virtual_world {
 
 /* As camera `index` of the rig finds it. Pure. */
 weft_virtual_world weft_virtual_world_of_camera(const weft_virtual_settings *settings, uint64_t seed, int index);
-
-/* The same for the first camera. Pure. */
-weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, uint64_t seed);
 
 /* Plate frame to true camera frame during a viewpoint: the nominal pose, with the error of the camera arm drawn for
  * this viewpoint, after the mounting of the plate. Pure. */

@@ -22,7 +22,7 @@ static weft_code scale_to_tiles(const char *cloth, double tiles, weft_virtual_se
     rig->rig.opening_mm = opening_mm;
     rig->rig.focal_length_px /= scale;
     rig->mounting_translation_mm *= scale;
-    rig->stay_translation_mm *= scale;
+    rig->viewpoint_translation_mm *= scale;
     weft_stitch_free(&stitch);
     return WEFT_OK;
 }

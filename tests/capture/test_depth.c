@@ -18,7 +18,7 @@ static weft_virtual_settings exact_settings(void)
     settings.light_power_drift = 0;
     settings.rig.vignetting_r2 = settings.rig.vignetting_r4 = 0;
     settings.mounting_rotation_deg = settings.mounting_translation_mm = 0;
-    settings.stay_rotation_deg = settings.stay_translation_mm = settings.light_rotation_deg = 0;
+    settings.viewpoint_rotation_deg = settings.viewpoint_translation_mm = settings.light_rotation_deg = 0;
     return settings;
 }
 

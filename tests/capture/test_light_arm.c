@@ -32,7 +32,7 @@ static weft_virtual_settings settings_of(double mounting_deg, double mounting_mm
     s.full_well_electrons = 1e7;
     s.read_noise_electrons = s.light_power_drift = 0;
     s.focal_length_error = s.principal_point_error_px = s.k1_error = 0;
-    s.stay_rotation_deg = s.stay_translation_mm = 0;
+    s.viewpoint_rotation_deg = s.viewpoint_translation_mm = 0;
     s.mounting_rotation_deg = mounting_deg;
     s.mounting_translation_mm = mounting_mm;
     s.light_rotation_deg = arm_deg;

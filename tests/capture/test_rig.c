@@ -255,7 +255,7 @@ static void errors_of_a_viewpoint_have_the_size_that_the_settings_say(void **sta
     (void)state;
     weft_virtual_settings settings = weft_virtual_settings_default();
     settings.mounting_rotation_deg = settings.mounting_translation_mm = 0;
-    weft_virtual_world world = weft_virtual_world_of(&settings, 3);
+    weft_virtual_world world = weft_virtual_world_of_camera(&settings, 3, 0);
     weft_pose nominal = weft_pose_of_view(degrees(0, 0), settings.rig.camera_distance_mm);
     double squares = 0;
     const int viewpoints = 3000;
@@ -264,7 +264,7 @@ static void errors_of_a_viewpoint_have_the_size_that_the_settings_say(void **sta
         weft_vec3 shift = weft_subtract(pose.translation, nominal.translation);
         squares += weft_dot(shift, shift) / 3;
     }
-    assert_true(fabs(sqrt(squares / viewpoints) / settings.stay_translation_mm - 1) < 0.05);
+    assert_true(fabs(sqrt(squares / viewpoints) / settings.viewpoint_translation_mm - 1) < 0.05);
 }
 
 int test_rig(void)

@@ -61,7 +61,7 @@ static void what_is_written_is_what_is_read(void **state)
     assert_string_equal(rig.name, "bench");
     assert_float_equal(rig.opening_mm, 30, 0);
     assert_int_equal(rig.stage.backend, WEFT_STAGE_USB);
-    assert_float_equal(rig.stage.usb.vendor, 0x1209, 0);
+    assert_float_equal(rig.stage.usb_vendor, 0x1209, 0);
     assert_int_equal(rig.axes.count, 1);
     const weft_axis *arm = &rig.axes.axis[0];
     assert_string_equal(arm->name, "arm");

@@ -67,7 +67,7 @@ static int brightest_white(const virtual_session *request, const weft_session *s
     weft_session_photograph_path(session, shot, path, sizeof path);
     assert_non_null(samples);
     assert_int_equal(weft_photograph_read(path, SMALL_SIZE, SMALL_SIZE, session->bits, samples, NULL), WEFT_OK);
-    weft_virtual_world world = weft_virtual_world_of(&request->rig.settings, request->rig.seed);
+    weft_virtual_world world = weft_virtual_world_of_camera(&request->rig.settings, request->rig.seed, 0);
     weft_pose pose = weft_virtual_world_pose(&world, session->shot[shot].view, session->record[shot].viewpoint);
     weft_homography homography = weft_homography_of_pose(&world.camera, &pose);
     int brightest = 0;

@@ -9,7 +9,7 @@ typedef struct stage {
     weft_synthetic_request request;
     weft_synthetic_shot shot;
     weft_synthetic_sheet sheet;
-    weft_synthetic_content content;
+    weft_virtual_sample content;
     weft_synthetic_scene scene;
 } stage;
 
@@ -23,7 +23,7 @@ static void set_up(stage *s, bool with_things)
     s->request.no_balls = s->request.no_pin = !with_things;
     weft_synthetic_plan(&s->request, &s->shot);
     s->sheet = weft_synthetic_sheet_of(s->request.opening_mm, true, 1);
-    s->content = (weft_synthetic_content){.opening_mm = s->request.opening_mm, .is_checker = true};
+    s->content = (weft_virtual_sample){.opening_mm = s->request.opening_mm, .is_checker = true};
     s->scene = weft_synthetic_scene_of(&s->request, &s->shot, &s->sheet, &s->content);
 }
 

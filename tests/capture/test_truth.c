@@ -49,7 +49,7 @@ static int load_truth(void)
     int good = file >= 0 && load(file, "rotation", H5T_NATIVE_DOUBLE, VIEWPOINTS * 9, rotation) &&
                load(file, "translation_mm", H5T_NATIVE_DOUBLE, VIEWPOINTS * 3, translation) &&
                load(file, "light_mm", H5T_NATIVE_DOUBLE, SMALL_SHOTS * 3, light) &&
-               load(file, "stay", H5T_NATIVE_INT, SMALL_SHOTS, viewpoint) &&
+               load(file, "viewpoint", H5T_NATIVE_INT, SMALL_SHOTS, viewpoint) &&
                load(file, "image_shot", H5T_NATIVE_INT, IMAGES, image_shot) &&
                load(file, "reflectance", H5T_NATIVE_FLOAT, IMAGES * TEXELS * TEXELS * 3, reflectance);
     H5Fclose(file);

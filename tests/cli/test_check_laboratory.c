@@ -159,7 +159,7 @@ static weft_virtual_request request_of(void)
     settings->rig.bits = 16;
     settings->rig.black_level = BLACK;
     settings->samples_per_pixel = 4;
-    settings->stay_rotation_deg = settings->stay_translation_mm = settings->light_rotation_deg = 0;
+    settings->viewpoint_rotation_deg = settings->viewpoint_translation_mm = settings->light_rotation_deg = 0;
     return request;
 }
 

@@ -287,7 +287,7 @@ static void enter_scratch_folder(char folder[])
         fail("no scratch folder");
     write_plan();
     write_text("rig.json", "{\"rig\":\"virtual\",\"width_px\":96,\"height_px\":96,\"focal_length_px\":440,"
-                           "\"samples_per_pixel\":2,\"stay_rotation_deg\":0,\"stay_translation_mm\":0,"
+                           "\"samples_per_pixel\":2,\"viewpoint_rotation_deg\":0,\"viewpoint_translation_mm\":0,"
                            "\"light_rotation_deg\":0,\"light_power_drift\":0}");
 }
 

@@ -130,13 +130,13 @@ static void lines_are_found(void **state)
 {
     (void)state;
     weft_virtual_settings s = axes_off_settings();
-    s.stay_rotation_deg = s.stay_translation_mm = 0;
+    s.viewpoint_rotation_deg = s.viewpoint_translation_mm = 0;
     errors still = calibrate_seeds(&s, 2, "without scatter");
     assert_true(still.line_deg[0] < 0.006 && still.line_deg[1] < 0.003);
     assert_true(still.line_mm[0] < 0.05 && still.line_mm[1] < 0.02);
     assert_true(still.view_deg < 0.005 && still.texels < 0.01);
-    s.stay_rotation_deg = 0.02;
-    s.stay_translation_mm = 0.05;
+    s.viewpoint_rotation_deg = 0.02;
+    s.viewpoint_translation_mm = 0.05;
     errors little = calibrate_seeds(&s, 3, "scatter of 0.02 degrees, 0.05 mm");
     assert_true(little.line_deg[0] < 0.04 && little.line_deg[1] < 0.012);
     assert_true(little.view_deg < 0.02);
@@ -169,8 +169,8 @@ static void bearings_are_found_where_they_are_told(void **state)
     weft_virtual_settings settings = axes_off_settings();
     settings.axis_scale = 0.002;
     settings.axis_uneven_deg = settings.axis_wobble_deg = 0.1;
-    settings.stay_rotation_deg = 0.01;
-    settings.stay_translation_mm = 0.02;
+    settings.viewpoint_rotation_deg = 0.01;
+    settings.viewpoint_translation_mm = 0.02;
     axes_series s = axes_series_take(&settings, 1, 1);
     weft_axes_report report = calibrate(&s);
     errors e = compare(&s, &report);
@@ -213,8 +213,8 @@ static void the_lens_is_found_where_it_may(void **state)
     weft_virtual_settings settings = axes_off_settings();
     settings.focal_length_error = 0.01;
     settings.principal_point_error_px = 6;
-    settings.stay_rotation_deg = 0.01;
-    settings.stay_translation_mm = 0.02;
+    settings.viewpoint_rotation_deg = 0.01;
+    settings.viewpoint_translation_mm = 0.02;
     axes_series s = axes_series_take(&settings, 4, 1);
     weft_axes_report report;
     weft_error error = {0};
@@ -234,7 +234,7 @@ static void a_turntable_is_found(void **state)
 {
     (void)state;
     weft_virtual_settings settings = axes_off_settings();
-    settings.stay_rotation_deg = settings.stay_translation_mm = 0;
+    settings.viewpoint_rotation_deg = settings.viewpoint_translation_mm = 0;
     axes_series s = axes_series_take(&settings, 5, 1);
     for (int i = 0; i < SHOTS; i++) {
         s.shot[i].turns.deg[WEFT_SAMPLE_PHI] = -s.shot[i].turns.deg[WEFT_CAMERA_PHI];
@@ -313,8 +313,8 @@ static void a_perfect_rig_is_the_nominal_one(void **state)
     weft_rig_poses nominal = weft_rig_poses_nominal(&camera, 500);
     settings.axes = 1;
     settings.mounting_rotation_deg = settings.mounting_translation_mm = 0;
-    settings.stay_rotation_deg = settings.stay_translation_mm = 0;
-    weft_virtual_world world = weft_virtual_world_of(&settings, 1);
+    settings.viewpoint_rotation_deg = settings.viewpoint_translation_mm = 0;
+    weft_virtual_world world = weft_virtual_world_of_camera(&settings, 1, 0);
     for (int i = 0; i < WEFT_UBO81_COUNT; i++) {
         weft_angles view = weft_ubo81_angles(i);
         weft_turns turns = weft_turns_of_view(view);

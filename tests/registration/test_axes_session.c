@@ -171,7 +171,7 @@ static void a_calibrated_night_is_as_good_as_the_truth(void **state)
     (void)state;
     outcome calibrated = register_night("calibrated");
     weft_virtual_world rest = c.rig.world;
-    rest.settings.stay_rotation_deg = rest.settings.stay_translation_mm = 0;
+    rest.settings.viewpoint_rotation_deg = rest.settings.viewpoint_translation_mm = 0;
     weft_motion *recorded = c.night.pose;
     weft_motion known[VIEWPOINTS];
     for (int shot = 0; shot < VIEWPOINTS; shot++) {

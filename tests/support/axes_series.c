@@ -51,7 +51,7 @@ weft_angles axes_series_view(int index)
 
 axes_series axes_series_take(const weft_virtual_settings *settings, uint64_t seed, int rounds)
 {
-    axes_series s = {.world = weft_virtual_world_of(settings, seed), .count = rounds * AXES_SERIES_SHOTS};
+    axes_series s = {.world = weft_virtual_world_of_camera(settings, seed, 0), .count = rounds * AXES_SERIES_SHOTS};
     weft_camera camera = weft_rig_settings_camera(&settings->rig);
     for (int i = 0; i < s.count; i++)
         axes_see(&s.world, axes_series_view(i % AXES_SERIES_SHOTS), i, &s.shot[i]);
@@ -62,7 +62,7 @@ axes_series axes_series_take(const weft_virtual_settings *settings, uint64_t see
 weft_virtual_world axes_at_rest(const weft_virtual_world *world)
 {
     weft_virtual_world rest = *world;
-    rest.settings.stay_rotation_deg = rest.settings.stay_translation_mm = 0;
+    rest.settings.viewpoint_rotation_deg = rest.settings.viewpoint_translation_mm = 0;
     return rest;
 }
 
