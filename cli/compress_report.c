@@ -52,14 +52,9 @@ static void report_model(const weft_compressed *done)
 static void report_counts(const weft_compressed *done)
 {
     const weft_compress_report *report = done->report;
-    double texels = (double)report->texel_count;
     weft_command_say(done->common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
                      100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
                      report->texel_count);
-    if (report->model != WEFT_COMPRESS_COMPONENTS)
-        weft_command_say(done->common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
-                         100 * (double)report->turned_frame_count / texels,
-                         100 * (double)report->second_start_count / texels);
 }
 
 static void report_certificate(const weft_common_options *common, const weft_certificate *certificate)

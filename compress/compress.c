@@ -147,8 +147,6 @@ static void take_counts(const weft_texel_counts *counts, weft_compress_report *r
 {
     report->texel_count = counts->texels;
     report->empty_texel_count = counts->empty;
-    report->turned_frame_count = counts->turned;
-    report->second_start_count = counts->second_start;
 }
 
 static void take_times(const weft_block_reader_times *times, weft_compress_report *report)

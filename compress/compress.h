@@ -22,8 +22,6 @@ typedef struct weft_compress_report {
     long masked_count;       /* of these, not used: masked, not finite, or light below the horizon */
     long texel_count;        /* that were fitted: of all levels, of components those of level 0 */
     long empty_texel_count;  /* of these, without any valid sample; they are black */
-    long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
-    long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
     weft_components_report components; /* where there are any */
     double seconds;
     long block_count;         /* of the dataset; 0 of a sparse model, which reads rows */

@@ -77,10 +77,7 @@ static json_t *describe_components(const weft_compress_options *options, const w
 
 static void describe_lobes(const weft_compress_report *report, const weft_sparse_setting *setting, json_t **fit)
 {
-    double texels = (double)(report->texel_count > 0 ? report->texel_count : 1);
     weft_json_put(fit, "lobes", json_integer(report->lobe_count));
-    weft_json_put(fit, "turned_frames", json_real((double)report->turned_frame_count / texels));
-    weft_json_put(fit, "retro_reflective_starts", json_real((double)report->second_start_count / texels));
     if (report->model != WEFT_COMPRESS_SPARSE)
         return;
     weft_json_put(fit, "largest_exponent", json_real(setting->largest_exponent));

@@ -27,13 +27,14 @@ static weft_gram_point typical_point(int lobe_count)
 static double pass_microseconds(weft_instruction_set set, const texel_source *source, const pass_memory *memory,
                                 int lobe_count)
 {
-    const weft_fit_kernels *kernels = weft_fit_kernels_of(set);
+    weft_processor_limit(set);
     const weft_gram_point point = typical_point(lobe_count);
     double microseconds[REPEATS];
     for (int i = 0; i < REPEATS; i++) {
         double began = thread_microseconds();
-        kernels->accumulate(&source->bundle, source->samples.cosine, source->samples.value[0], &point, memory->table,
-                            WEFT_PART_ALL, memory->sums);
+        WEFT_DISPATCH(weft_gram_accumulate)
+        (&source->bundle, source->samples.cosine, source->samples.value[0], &point, memory->table, WEFT_PART_ALL,
+         memory->sums);
         microseconds[i] = thread_microseconds() - began;
     }
     return weft_quantile(microseconds, REPEATS, 0.5);

@@ -283,10 +283,10 @@ void weft_samples_free(weft_samples *samples)
 void weft_samples_gather(const weft_bundle *bundle, weft_values values, const float *sum, const float *count,
                          int group_size, weft_samples *samples)
 {
-    weft_fit_kernels_of(weft_processor_instruction_set())->gather(bundle, values, sum, count, group_size, samples);
+    WEFT_DISPATCH(weft_gather_samples)(bundle, values, sum, count, group_size, samples);
 }
 
 void weft_samples_weigh_for_screen(const weft_bundle *bundle, weft_samples *samples)
 {
-    weft_fit_kernels_of(weft_processor_instruction_set())->weigh(bundle, samples);
+    WEFT_DISPATCH(weft_gather_weigh)(bundle, samples);
 }

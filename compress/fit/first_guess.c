@@ -1,5 +1,5 @@
 /* Fits from nothing. */
-#include "compress/fit/screen.h"
+#include "compress/fit/workspace.h"
 
 #include "base/integers.h"
 
@@ -22,6 +22,7 @@ enum {
 #define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not followed */
 #define NEAR 1.1   /* nor is a challenger refined that leaves so many times what the incumbent leaves */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
+#define WORTHWHILE 0.98        /* a frame is turned only where that takes at least 2 % off the squared error */
 
 /* A search that grows lobe by lobe. The incumbent comes from the usual starts, which cloth mostly wants; the challenger
  * is the best of all others, and has to be clearly better: shapes that few samples tell apart may glare elsewhere. */
@@ -29,17 +30,21 @@ typedef struct search {
     const weft_bundle *bundle;
     const weft_samples *samples;
     int channel;
-    weft_fit_options options; /* of the starts */
+    const weft_fit_options *wanted; /* of the fit */
+    weft_fit_options options;       /* of the starts */
     weft_fit_workspace *workspace;
     bool has_incumbent, has_challenger;
     double left[WEFT_TRIALS]; /* what those two leave where T keeps within a moderate contrast */
     double quarters;          /* of passes */
 } search;
 
+/* A T that is not finite comes of a model that vanishes in all of a view but for rounding: such a fit is worth nothing.
+ */
 static double moderate_residual(const search *own)
 {
     const weft_trial *now = &own->workspace->trial[0];
-    return own->options.table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
+    double left = own->wanted->table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
+    return isfinite(left) ? left : INFINITY;
 }
 
 static void keep(search *own, bool is_usual)
@@ -78,12 +83,17 @@ static void follow(search *own, bool is_usual)
 }
 
 /* Only the shapes of `start` count. */
-static void try_shapes(search *own, const weft_fit *start, bool is_usual)
+static void look_at(const search *own, const weft_fit_options *options, const weft_fit *start)
 {
     weft_trial *now = &own->workspace->trial[0];
     now->fit = *start;
     now->fit.passes = 0;
-    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, &own->options, now);
+    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, options, now);
+}
+
+static void try_shapes(search *own, const weft_fit *start, bool is_usual)
+{
+    look_at(own, &own->options, start);
     follow(own, is_usual);
 }
 
@@ -137,172 +147,108 @@ static void grow(search *own)
     for (int i = 0; i < found; i++) {
         weft_fit more = base;
         more.lobe[more.lobe_count++] = lobe[i];
-        more.start = 1;
         try_shapes(own, &more, false);
     }
     settle(own);
 }
 
-/* What stage `lobe_count` of a search found. */
-static void note_stage(const search *own, weft_starts *to)
+/* Finds starts with as many lobes as are wanted, each number from the one before, with few passes over few lights. The
+ * best comes first. Returns their number, 1 or 2. */
+static int find_starts(search *own, const weft_frame *frame, weft_fit start[2])
 {
     const weft_trial *trial = own->workspace->trial;
-    int lobes = own->options.lobe_count;
-    bool is_close = own->has_challenger && (lobes == 1 || own->left[CHALLENGER] < NEAR * own->left[INCUMBENT]);
-    to->count[lobes] = is_close ? 2 : 1;
-    to->start[lobes][0] = trial[INCUMBENT].fit;
-    if (is_close)
-        to->start[lobes][1] = trial[CHALLENGER].fit;
-}
-
-void weft_fit_find_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
-                          weft_starts *starts)
-{
     const weft_fit nothing = {.frame = *frame};
-    search own = {
-        .bundle = bundle, .samples = samples, .channel = channel, .options = *options, .workspace = workspace};
-    starts->passes = 0;
-    for (int lobes = 0; lobes <= options->lobe_count; lobes++) {
-        starts->count[lobes] = 1;
-        starts->start[lobes][0] = (weft_fit){.frame = *frame, .lobe_count = lobes};
-    }
-    if (!(samples->energy[channel] > 0) || samples->valid_count == 0)
-        return;
-    own.options.coarse = bundle->is_coarse;
-    own.options.max_passes = START_PASSES;
-    own.options.tolerance = START_TOLERANCE;
-    own.options.lobe_count = 0;
-    try_shapes(&own, &nothing, true);
-    note_stage(&own, starts);
-    while (own.options.lobe_count < options->lobe_count) {
-        grow(&own);
-        note_stage(&own, starts);
-    }
-    starts->passes = own.quarters / 4;
+    own->options = *own->wanted;
+    own->options.fit_frame = false;
+    own->options.coarse = own->bundle->is_coarse;
+    own->options.max_passes = START_PASSES;
+    own->options.tolerance = START_TOLERANCE;
+    own->options.lobe_count = 0;
+    try_shapes(own, &nothing, true);
+    while (own->options.lobe_count < own->wanted->lobe_count)
+        grow(own);
+    start[0] = trial[INCUMBENT].fit;
+    start[1] = trial[CHALLENGER].fit;
+    bool is_alone = own->options.lobe_count == 1;
+    return own->has_challenger && (is_alone || own->left[CHALLENGER] < NEAR * own->left[INCUMBENT]) ? 2 : 1;
 }
 
 /* ---- From a start to a fit ---- */
 
-/* What a refinement needs. */
-typedef struct refinement {
-    const weft_bundle *bundle;
-    const weft_samples *samples;
-    int channel;
-    weft_fit_options options;
-    bool turn;
-    weft_fit_workspace *workspace;
-} refinement;
-
-/* The first look at all lights. */
-static void begin(const refinement *own, const weft_fit *start)
+static void refine(const search *own, bool turning, weft_fit *fit, double *table)
 {
     weft_trial *now = &own->workspace->trial[0];
-    now->fit = *start;
-    now->fit.passes = 0;
-    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, &own->options, now);
+    weft_fit_options options = *own->wanted;
+    options.fit_frame = turning;
+    weft_workspace_refine(own->bundle, own->samples, own->channel, &options, own->workspace, 0.01);
+    weft_workspace_finish(own->bundle, &options, now, fit, table);
 }
 
-/* A T that is not finite comes of a model that vanishes in all of a view but for rounding: such a fit is worth nothing.
+/* Refines the start that was looked at, first in its frame. Returns what is left. A diffuse term has no use for turns.
  */
-static double left_at_moderate_contrast(const refinement *own)
+static double finish(const search *own, weft_fit *fit, double *table)
 {
-    const weft_trial *now = &own->workspace->trial[0];
-    double left = own->options.table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
-    return isfinite(left) ? left : INFINITY;
-}
-
-static void refine(const refinement *own, const weft_fit_options *options, weft_fit *fit, double *table)
-{
-    weft_workspace_refine(own->bundle, own->samples, own->channel, options, own->workspace, 0.01);
-    weft_workspace_finish(own->bundle, options, &own->workspace->trial[0], fit, table);
-}
-
-/* Returns what is left upright, or turned if it is turned. */
-static double finish(const refinement *own, weft_finalist *to)
-{
-    weft_trial *now = &own->workspace->trial[0];
-    weft_fit_options turning = own->options;
-    turning.fit_frame = true;
-    refine(own, &own->options, &to->upright, to->upright_table);
-    if (own->turn) {
-        now->fit.passes = 0;
-        refine(own, &turning, &to->turned, to->turned_table);
+    double *turned_table = own->workspace->scratch[0];
+    weft_fit turned;
+    refine(own, false, fit, table);
+    if (own->wanted->fit_frame && fit->lobe_count > 0) {
+        own->workspace->trial[0].fit.passes = 0;
+        refine(own, true, &turned, turned_table);
+        if (turned.residual < WORTHWHILE * fit->residual) {
+            *fit = turned;
+            memcpy(table, turned_table, (size_t)own->bundle->view_count * sizeof *table);
+        }
     }
-    return left_at_moderate_contrast(own);
+    return moderate_residual(own);
 }
 
 /* Whether a start that had a few passes over all lights has come near what another left in the end. The first steps of
  * a lobe that is alone tell nothing of that: it may have a long way to go. */
-static bool catches_up(const refinement *own, double left)
+static bool catches_up(const search *own, double left)
 {
-    weft_fit_options race = own->options;
+    weft_fit_options race = *own->wanted;
+    race.fit_frame = false;
     race.max_passes = START_PASSES;
-    race.wanted = own->options.lobe_count > 1 ? NEAR * left : 0;
+    race.wanted = race.lobe_count > 1 ? NEAR * left : 0;
     weft_workspace_refine(own->bundle, own->samples, own->channel, &race, own->workspace, 0.01);
-    return left_at_moderate_contrast(own) < NEAR * left;
+    return moderate_residual(own) < NEAR * left;
 }
 
-static void swap_finalists(weft_finalist *a, weft_finalist *b)
+/* Takes the second start where it ends clearly better than the first. */
+static void try_second(const search *own, const weft_fit *start, double left, weft_fit *fit, double *table)
 {
-    weft_finalist swap = *a;
-    *a = *b;
-    *b = swap;
-}
-
-static int finish_empty(const refinement *own, const weft_fit *start, weft_finalist *to)
-{
-    to->upright = to->turned = *start;
-    weft_workspace_finish_empty(own->bundle, own->samples, own->channel, &to->upright, to->upright_table);
-    if (own->turn)
-        weft_workspace_finish_empty(own->bundle, own->samples, own->channel, &to->turned, to->turned_table);
-    return 1;
-}
-
-int weft_fit_refine_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                           const weft_fit_options *options, bool turn, weft_fit_workspace *workspace,
-                           const weft_starts *starts, int most, weft_finalist *finalist)
-{
-    const weft_fit *start = starts->start[options->lobe_count];
-    const refinement own = {bundle, samples, channel, *options, turn, workspace};
-    weft_trial *now = &workspace->trial[0], *best = &workspace->trial[INCUMBENT];
-    if (!(samples->energy[channel] > 0) || samples->valid_count == 0)
-        return finish_empty(&own, &start[0], &finalist[0]);
-    begin(&own, &start[0]);
-    if (!isfinite(left_at_moderate_contrast(&own)))
-        begin(&own, &starts->start[0][0]);
-    double left = finish(&own, &finalist[0]);
-    int passes = finalist[0].upright.passes + (int)ceil(starts->passes), count = 1;
-    if (weft_smaller(starts->count[options->lobe_count], most) > 1) {
+    weft_trial *now = &own->workspace->trial[0], *best = &own->workspace->trial[INCUMBENT];
+    double *other_table = own->workspace->scratch[1];
+    weft_fit other;
+    weft_trial_swap(now, best);
+    look_at(own, own->wanted, start);
+    bool is_near = catches_up(own, left),
+         is_better = is_near && finish(own, &other, other_table) < CLEARLY_BETTER * left;
+    int passes = fit->passes + (is_near ? other.passes : now->fit.passes);
+    if (is_better) {
+        *fit = other;
+        memcpy(table, other_table, (size_t)own->bundle->view_count * sizeof *table);
+    } else {
         weft_trial_swap(now, best);
-        begin(&own, &start[1]);
-        count += catches_up(&own, left);
-        bool is_better = count > 1 && finish(&own, &finalist[1]) < CLEARLY_BETTER * left;
-        passes += count > 1 ? finalist[1].upright.passes : now->fit.passes;
-        if (is_better)
-            swap_finalists(&finalist[0], &finalist[1]);
-        else
-            weft_trial_swap(now, best);
     }
-    finalist[0].upright.passes = passes;
-    return count;
-}
-
-void weft_fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_starts *starts,
-                          weft_fit *fit, double *table)
-{
-    weft_finalist finalist[WEFT_FINALISTS] = {{.upright_table = workspace->finalist_table[0]},
-                                              {.upright_table = workspace->finalist_table[1]}};
-    weft_fit_refine_starts(bundle, samples, channel, options, false, workspace, starts, WEFT_FINALISTS, finalist);
-    *fit = finalist[0].upright;
-    memcpy(table, finalist[0].upright_table, (size_t)bundle->view_count * sizeof *table);
+    fit->passes = passes;
 }
 
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table)
 {
-    weft_starts starts;
-    weft_fit_find_starts(bundle, samples, channel, options, workspace, frame, &starts);
-    weft_fit_from_starts(bundle, samples, channel, options, workspace, &starts, fit, table);
+    const weft_fit nothing = {.frame = *frame};
+    search own = {.bundle = bundle, .samples = samples, .channel = channel, .wanted = options, .workspace = workspace};
+    weft_fit start[2];
+    *fit = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
+    if (weft_workspace_finish_empty(bundle, samples, channel, fit, table))
+        return;
+    int count = find_starts(&own, frame, start);
+    look_at(&own, options, &start[0]);
+    if (!isfinite(moderate_residual(&own)))
+        look_at(&own, options, &nothing);
+    double left = finish(&own, fit, table);
+    if (count > 1)
+        try_second(&own, &start[1], left, fit, table);
+    fit->passes += (int)ceil(own.quarters / 4);
 }

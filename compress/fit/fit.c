@@ -30,6 +30,6 @@ const float *weft_fit_evaluate(const weft_bundle *bundle, const weft_samples *sa
                                const weft_fit *fit)
 {
     weft_gram_point point = weft_gram_point_of_fit(fit);
-    workspace->trial[0].kernels->evaluate(bundle, samples->cosine, &point, WEFT_PART_ALL, workspace->model);
+    WEFT_DISPATCH(weft_gram_evaluate)(bundle, samples->cosine, &point, WEFT_PART_ALL, workspace->model);
     return workspace->model;
 }

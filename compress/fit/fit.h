@@ -22,14 +22,13 @@ typedef struct weft_fit {
     weft_fit_lobe lobe[WEFT_MATERIAL_MAX_LOBES];
     weft_frame frame; /* of the texel */
     double residual;  /* weighted sum of squares; compare with weft_samples.energy */
-    int start;        /* which start it came from: 0 the usual ones, 1 a lobe that the screen found */
     int passes;       /* over the samples, coarse ones counted as a quarter (rounded up) */
 } weft_fit;
 
 typedef struct weft_fit_options {
     int lobe_count;       /* 0..3 */
     bool table;           /* fit T; else T = 1 */
-    bool fit_frame;       /* let the joint fit rotate the frame */
+    bool fit_frame;       /* let the joint fit turn the frame */
     bool coarse;          /* look at the coarse lights of each view only */
     double max_exponent;  /* N <= this; cloth stays below 512, retro-reflective tape wants thousands */
     double max_amplitude; /* rho and each A <= this, in the scaled units of weft_samples */
@@ -59,41 +58,11 @@ int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *sam
 void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                      const weft_fit_options *options, weft_fit_workspace *workspace, weft_fit *fit, double *table);
 
-/* From nothing. `frame` is the frame to begin with. */
+/* From nothing, in the frame that is given: shapes are found lobe by lobe, with few passes over few lights, and the
+ * best two are refined. With options->fit_frame each is then turned from there, where that takes at least 2 % off the
+ * residual. The workspace keeps the last pass. */
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table);
-
-/* Where a search from nothing stands after few passes over few lights: with every number of lobes, shapes to refine. */
-enum { WEFT_FINALISTS = 2 };
-typedef struct weft_starts {
-    int count[WEFT_MATERIAL_MAX_LOBES + 1]; /* of starts with so many lobes, the best first */
-    weft_fit start[WEFT_MATERIAL_MAX_LOBES + 1][WEFT_FINALISTS];
-    double passes; /* over all samples that this took */
-} weft_starts;
-
-/* Finds starts with up to options->lobe_count lobes, each number from the one before. */
-void weft_fit_find_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
-                          weft_starts *starts);
-
-/* Where a start ended, in the frame that it began with and, if wanted, turned from there. The tables [view_count] are
- * the caller's. */
-typedef struct weft_finalist {
-    weft_fit upright, turned;
-    double *upright_table, *turned_table; /* turned_table: NULL if not wanted */
-} weft_finalist;
-
-/* Refines the starts with options->lobe_count lobes, which need not be as many as were sought, and no more than `most`
- * of them, into finalist [most]. Returns the number of finalists, the best first; the second, where there is one, ended
- * in another minimum. The workspace keeps the last pass of the best. */
-int weft_fit_refine_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                           const weft_fit_options *options, bool turn, weft_fit_workspace *workspace,
-                           const weft_starts *starts, int most, weft_finalist *finalist);
-
-/* The same upright, the better one alone. */
-void weft_fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_starts *starts,
-                          weft_fit *fit, double *table);
 
 /* The model at every sample, without T: [sample_count], valid until the workspace is used again. */
 const float *weft_fit_evaluate(const weft_bundle *bundle, const weft_samples *samples, weft_fit_workspace *workspace,

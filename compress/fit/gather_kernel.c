@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
-
 /* Sums over a texel. */
 typedef struct gather_sums {
     double energy[WEFT_CHANNELS + 1];

@@ -5,8 +5,6 @@
 
 #include <string.h>
 
-WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
-
 enum {
     PIECE = 27,                     /* slots whose columns stay in the first cache */
     TILE = LANES == 8 ? 3 : 5,      /* TILE x TILE sums stay in registers: AVX2 has half as many as AVX-512 and NEON */

@@ -1,4 +1,4 @@
-/* The inner loops of the fit: compiled once for every instruction set, each copy behind one table of functions. */
+/* The inner loops of the fit, compiled once for every instruction set. */
 #ifndef WEFT_COMPRESS_FIT_KERNELS_H
 #define WEFT_COMPRESS_FIT_KERNELS_H
 
@@ -20,48 +20,23 @@ typedef struct weft_screen_sums {
     float slope[WEFT_SCREEN_EXPONENTS], square[WEFT_SCREEN_EXPONENTS], projected[WEFT_SCREEN_EXPONENTS];
 } weft_screen_sums;
 
-struct weft_fit_kernels {
-    /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/fit/gram.h) summed over the samples of
-     * each view in a part of its slots. table [view_stride] is T(v) in e. Views without samples keep what their sums
-     * were. */
-    void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
-                       const float *table, weft_part part, float *sums);
-    /* The samples of a texel: see weft_samples_gather. */
-    void (*gather)(const weft_bundle *bundle, weft_values values, const float *sum, const float *count, int group_size,
-                   weft_samples *samples);
-    /* See weft_samples_weigh_for_screen. */
-    void (*weigh)(const weft_bundle *bundle, weft_samples *samples);
-    /* Adds the squares of the samples, each counted once whatever its weight, and of what `model` [sample_count] times
-     * table [view_stride] leaves of them. */
-    void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
-                    const float *table, weft_error_sums *sums);
-    /* The largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples that count. */
-    void (*brightest)(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r, float *f,
-                      float *cosine);
-    /* k (rho + sum_i A_i b_i^N_i) of the samples of a part, without T: result [sample_count]. */
-    void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, weft_part part,
-                     float *result);
-    /* From screen->model = k f, without T, to all of `screen` but `negligible`. Returns the sum of T^2 <f|f>. */
-    double (*screen_load)(const weft_bundle *bundle, const float *cosine, const float *value, const float *table,
-                          weft_part part, weft_screen *screen);
-    /* Lobes of one shape M (compress/fit/gram.h) and all exponents. */
-    void (*screen_try)(const weft_bundle *bundle, const weft_screen *screen, const float shape[3][3], weft_part part,
-                       weft_screen_sums *result);
-    /* The linear rows of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. */
-    double (*digest)(const weft_bundle *bundle, weft_trial *trial);
-    /* Residual at other linear parameters than those of the pass; their T into table [view_stride]. */
-    double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
-                       float *table);
-    /* The same residual, and normal equations of the linear parameters alone, T eliminated: h [n][n], g [n]. */
-    double (*linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
-                            const weft_linear *linear, double *h, double *g);
-    /* See weft_normal_of_trial; without the curvature of the scale, which it returns. */
-    double (*normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
-                     weft_normal *normal);
-};
-
-/* The functions of one set, by their names in it. */
-#define WEFT_DECLARE_FIT_KERNELS_OF(set)                                                                               \
+/* The kernels of one set, called by WEFT_DISPATCH (base/processor.h):
+ *
+ * gram_accumulate: sums [WEFT_GRAM_PRODUCTS][view_stride], products of columns (see compress/fit/gram.h) summed over
+ * the samples of each view in a part of its slots. table [view_stride] is T(v) in e. Views without samples keep what
+ *     their sums were.
+ * gram_evaluate: k (rho + sum_i A_i b_i^N_i) of the samples of a part, without T: result [sample_count].
+ * gather_samples, gather_weigh: see weft_samples_gather and weft_samples_weigh_for_screen.
+ * gather_compare: adds the squares of the samples, each counted once whatever its weight, and of what `model`
+ *     [sample_count] times table [view_stride] leaves of them.
+ * gather_brightest: the largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples
+ * that count. screen_load: from screen->model = k f, without T, to all of `screen` but `negligible`. Returns the sum of
+ * T^2 <f|f>. screen_try: lobes of one shape M (compress/fit/gram.h) and all exponents. linear_digest: the linear rows
+ * of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. linear_residual: the
+ * residual at other linear parameters than those of the pass; their T into table [view_stride]. linear_normal: the same
+ * residual, and normal equations of the linear parameters alone, T eliminated: h [n][n], g [n]. fit_normal: see
+ * weft_normal_of_trial; without the curvature of the scale, which it returns. */
+#define WEFT_DECLARE_FIT_KERNELS(set)                                                                                  \
     void weft_gram_accumulate_##set(const weft_bundle *bundle, const float *cosine, const float *value,                \
                                     const weft_gram_point *point, const float *table, weft_part part, float *sums);    \
     void weft_gather_samples_##set(const weft_bundle *bundle, weft_values values, const float *sum,                    \
@@ -84,9 +59,7 @@ struct weft_fit_kernels {
                                     const weft_linear *linear, double *h, double *g);                                  \
     double weft_fit_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,     \
                                  weft_normal *normal)
-#define WEFT_DECLARE_FIT_KERNELS(set) WEFT_DECLARE_FIT_KERNELS_OF(set)
 
-/* Those of an instruction set of this processor. */
-const weft_fit_kernels *weft_fit_kernels_of(weft_instruction_set set);
+WEFT_FOR_EACH_SET(WEFT_DECLARE_FIT_KERNELS);
 
 #endif

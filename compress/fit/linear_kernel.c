@@ -1,8 +1,6 @@
 /* What follows from the sums of a pass for the linear parameters x = (rho, A_1, ...), all views at once. */
 #include "compress/fit/view_lanes.h"
 
-WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
-
 /* A linear column as a combination of the columns of the pass. */
 typedef struct combination {
     int count, column[3];

@@ -69,7 +69,7 @@ static void linear_to_fit(const weft_linear *linear, weft_fit *fit)
 
 void weft_trial_digest(const weft_bundle *bundle, weft_trial *trial)
 {
-    trial->negligible = 1e-9 * trial->kernels->digest(bundle, trial) / bundle->view_count;
+    trial->negligible = 1e-9 * WEFT_DISPATCH(weft_linear_digest)(bundle, trial) / bundle->view_count;
 }
 
 /* The residual and its normal equations at some linear parameters. */
@@ -105,20 +105,19 @@ static bool linear_step(const linear_state *now, int n, const double *least, dou
 
 void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const double *least, weft_trial *trial)
 {
-    const weft_fit_kernels *kernels = trial->kernels;
     linear_state now = {.linear = weft_linear_of_fit(&trial->fit)}, next;
-    now.residual = kernels->linear_normal(bundle, trial, with_table, &now.linear, now.h, now.g);
+    now.residual = WEFT_DISPATCH(weft_linear_normal)(bundle, trial, with_table, &now.linear, now.h, now.g);
     for (int round = 0; round < LINEAR_ROUNDS; round++) {
         double least_gain = round == 0 ? 0 : LINEAR_TOLERANCE * now.residual;
         if (!linear_step(&now, trial->fit.lobe_count + 1, least, trial->most, least_gain, &next.linear))
             break;
-        next.residual = kernels->linear_normal(bundle, trial, with_table, &next.linear, next.h, next.g);
+        next.residual = WEFT_DISPATCH(weft_linear_normal)(bundle, trial, with_table, &next.linear, next.h, next.g);
         if (!(next.residual < now.residual))
             break;
         now = next;
     }
     linear_to_fit(&now.linear, &trial->fit);
-    trial->residual = kernels->residual(bundle, trial, with_table, &now.linear, trial->table);
+    trial->residual = WEFT_DISPATCH(weft_linear_residual)(bundle, trial, with_table, &now.linear, trial->table);
 }
 
 void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *energy)
@@ -156,7 +155,7 @@ double weft_trial_moderate_residual(const weft_bundle *bundle, const weft_trial 
 void weft_trial_table(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *table)
 {
     const weft_linear linear = weft_linear_of_fit(fit);
-    trial->kernels->residual(bundle, trial, true, &linear, trial->table);
+    WEFT_DISPATCH(weft_linear_residual)(bundle, trial, true, &linear, trial->table);
     weft_trial_take_table(bundle, trial, table);
 }
 
@@ -223,6 +222,6 @@ void weft_normal_of_trial(const weft_bundle *bundle, bool with_table, bool rotat
                           weft_normal *normal)
 {
     *normal = (weft_normal){.n = 1 + 4 * trial->fit.lobe_count + (rotate && trial->fit.lobe_count ? 3 : 0)};
-    double scale = trial->kernels->normal(bundle, trial, with_table, rotate, normal);
+    double scale = WEFT_DISPATCH(weft_fit_normal)(bundle, trial, with_table, rotate, normal);
     fix_scale(&trial->fit, scale, normal);
 }

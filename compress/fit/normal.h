@@ -9,8 +9,6 @@
 #include "compress/fit/fit.h"
 #include "compress/fit/gram.h"
 
-typedef struct weft_fit_kernels weft_fit_kernels; /* compress/fit/kernels.h */
-
 enum {
     WEFT_LINEAR_MAX = 1 + WEFT_GRAM_LOBES,
     WEFT_NORMAL_MAX = 1 + 4 * WEFT_GRAM_LOBES + 3 /* parameters of a step */
@@ -42,7 +40,6 @@ static inline int weft_linear_gram(int j, int k)
 
 /* A point of the search after its pass: the sums, and where they were taken. Arrays by view are [view_stride]. */
 typedef struct weft_trial {
-    const weft_fit_kernels *kernels;
     double most;                      /* that rho and each A may be */
     weft_fit fit;                     /* shapes and frame of the pass; rho and A are moved by weft_trial_solve_linear */
     weft_linear at;                   /* rho and A of the pass */

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
-
 #define LN2 0.693147180559945309
 
 /* The columns of a pass, with the light turned into the frame of the texel, l' = R l:

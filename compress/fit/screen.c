@@ -1,4 +1,15 @@
-#include "compress/fit/screen.h"
+/* Which lobe would help a fit most: all lobes of a grid of shapes and exponents, tried at once to first order.
+ *
+ * For a lobe a(l, v) = k b^N that is added to a model f with amplitude x >= 0, T(v) eliminated in every view, the
+ * residual falls to first order by g^2 / h with
+ *     g = sum_v T <a | r - T f>,    h = sum_v T^2 (<a|a> - <a|f>^2 / <f|f>), without T: sum_v <a|a>.
+ * Exponents are the powers of four: each is the square of the square of the one before, and the square between them is
+ * what <a|a> takes. So a lobe costs five operations a sample, no power and no table, in any frame and for any
+ * directions.
+ *
+ * A fit grows lobe by lobe, each found so and then moved with all others (Boyd, Schiebinger and Recht 2017: alternating
+ * descent conditional gradient). */
+#include "compress/fit/workspace.h"
 
 #include "base/integers.h"
 
@@ -61,13 +72,13 @@ int weft_screen_run(const weft_bundle *bundle, const weft_samples *samples, int 
                     const weft_fit_options *options, weft_fit_workspace *workspace, const weft_trial *trial, int most,
                     weft_fit_lobe *lobe)
 {
-    const weft_fit_kernels *kernels = trial->kernels;
     weft_part part = WEFT_PART_COARSE;
     weft_screen *screen = &workspace->screen;
     weft_gram_point point = weft_gram_point_of_fit(&trial->fit);
     ranking own = {.most = weft_smaller(most, SHAPES), .lobe = lobe};
-    kernels->evaluate(bundle, samples->cosine, &point, part, screen->model);
-    double energy = kernels->screen_load(bundle, samples->cosine, samples->value[channel], trial->table, part, screen);
+    WEFT_DISPATCH(weft_gram_evaluate)(bundle, samples->cosine, &point, part, screen->model);
+    double energy =
+        WEFT_DISPATCH(weft_screen_load)(bundle, samples->cosine, samples->value[channel], trial->table, part, screen);
     screen->negligible = options->table ? (float)(1e-9 * energy / bundle->view_count) : INFINITY;
     for (int i = 0; i < SHAPES; i++) {
         weft_fit one = {.lobe_count = 1, .frame = trial->fit.frame};
@@ -75,7 +86,7 @@ int weft_screen_run(const weft_bundle *bundle, const weft_samples *samples, int 
             one.lobe[0].c[k] = shape[i][k];
         point = weft_gram_point_of_fit(&one);
         weft_screen_sums sums;
-        kernels->screen_try(bundle, screen, (const float(*)[3])point.shape[0], part, &sums);
+        WEFT_DISPATCH(weft_screen_try)(bundle, screen, (const float(*)[3])point.shape[0], part, &sums);
         double gain = best_exponent(&sums, options, &one.lobe[0]);
         if (gain > 0)
             rank(&own, &one.lobe[0], gain);

@@ -5,8 +5,6 @@
 
 #include <string.h>
 
-WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
-
 enum { PIECE = 8, EXPONENTS = WEFT_SCREEN_EXPONENTS };
 
 WEFT_INLINE lanes of_view(const weft_strip *strip, const float *by_view, int lane)

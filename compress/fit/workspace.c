@@ -17,7 +17,6 @@ static void *allocate_rows(size_t rows, size_t stride, size_t size)
 static bool create_trial(int view_stride, weft_trial *trial)
 {
     size_t stride = (size_t)view_stride;
-    trial->kernels = weft_fit_kernels_of(weft_processor_instruction_set());
     trial->pass_table = allocate_rows(1, stride, sizeof *trial->pass_table);
     trial->table = allocate_rows(1, stride, sizeof *trial->table);
     trial->linear = allocate_rows(WEFT_LINEAR_ROWS, stride, sizeof *trial->linear);
@@ -41,7 +40,7 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
     size_t views = (size_t)bundle->view_stride;
     workspace->table = allocate_rows(1, views, sizeof *workspace->table);
-    workspace->scratch[0] = allocate_rows(4, views, sizeof *workspace->scratch[0]);
+    workspace->scratch[0] = allocate_rows(2, views, sizeof *workspace->scratch[0]);
     workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
     weft_screen *screen = &workspace->screen;
     float **by_sample[] = {&screen->error, &screen->model, &screen->square};
@@ -58,8 +57,6 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
     }
     workspace->scratch[1] = workspace->scratch[0] + views;
-    workspace->finalist_table[0] = workspace->scratch[1] + views;
-    workspace->finalist_table[1] = workspace->finalist_table[0] + views;
     *result = workspace;
     return WEFT_OK;
 }
@@ -89,8 +86,8 @@ void weft_trial_swap(weft_trial *a, weft_trial *b)
 
 static void look(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_part part, weft_trial *trial)
 {
-    trial->kernels->accumulate(bundle, samples->cosine, samples->value[channel], &trial->point, trial->pass_table, part,
-                               trial->sums);
+    WEFT_DISPATCH(weft_gram_accumulate)
+    (bundle, samples->cosine, samples->value[channel], &trial->point, trial->pass_table, part, trial->sums);
     weft_trial_digest(bundle, trial);
     trial->fit.passes += 1;
 }

@@ -10,7 +10,6 @@ struct weft_fit_workspace {
     weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the two best starts */
     float *table;                  /* [view_stride] T to begin with */
     double *scratch[2];            /* [view_stride] */
-    double *finalist_table[2];     /* [view_stride] of weft_fit_cold */
     float *model;                  /* [sample_count] */
     weft_screen screen;
 };
@@ -45,5 +44,13 @@ void weft_workspace_finish(const weft_bundle *bundle, const weft_fit_options *op
 /* True where there is nothing to fit, black or no samples at all; `fit` is then black and T = 1. */
 bool weft_workspace_finish_empty(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_fit *fit,
                                  double *table);
+
+/* ---- Screen ---- */
+
+/* Up to `most` lobes that promise most to trial->fit, the best first, no two of one shape; amplitudes are those of the
+ * first order. Looks at the coarse lights. Returns their number. */
+int weft_screen_run(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                    const weft_fit_options *options, weft_fit_workspace *workspace, const weft_trial *trial, int most,
+                    weft_fit_lobe *lobe);
 
 #endif

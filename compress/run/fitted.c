@@ -94,8 +94,6 @@ void weft_fitted_add_counts(weft_texel_counts *to, const weft_texel_counts *from
 {
     to->texels += from->texels;
     to->empty += from->empty;
-    to->turned += from->turned;
-    to->second_start += from->second_start;
 }
 
 void weft_fitted_end_block(weft_fitted *fitted)

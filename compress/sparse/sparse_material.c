@@ -95,7 +95,6 @@ static void store_texel(const weft_sparse_field *field, const weft_sparse_texel 
     weft_material_set_ceiling(&material->level[level], texel, (float)ceiling_of(field, texel));
     counts->texels++;
     counts->empty += !has_samples(field, texel);
-    counts->turned += from->slope_x != 0 || from->slope_y != 0;
 }
 
 static weft_code fit_level(const weft_sparse_field *field, const weft_sparse_setting *setting, weft_material *material,
@@ -115,7 +114,6 @@ static weft_code fit_level(const weft_sparse_field *field, const weft_sparse_set
         material->level[level].error = weft_error_tally_summarise(tally, &own.sums);
         counts->texels += own.texels;
         counts->empty += own.empty;
-        counts->turned += own.turned;
     }
     weft_error_tally_free(tally);
     free(fitted);

@@ -21,7 +21,7 @@ typedef struct weft_texel_source {
 
 /* What happened to some texels. */
 typedef struct weft_texel_counts {
-    long texels, empty, turned, second_start;
+    long texels, empty;
     weft_error_sums sums;
 } weft_texel_counts;
 

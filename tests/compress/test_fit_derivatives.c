@@ -182,10 +182,10 @@ static weft_normal normal_of(texel_fixture *x, const weft_fit *fit, int n, bool 
     weft_trial *trial = &x->workspace->trial[0];
     weft_normal normal = {.n = n};
     options.table = with_table;
-    trial->kernels = weft_fit_kernels_of(set);
+    weft_processor_limit(set);
     trial->fit = *fit;
     weft_workspace_pass(&x->bundle, &x->samples, WEFT_GREY, &options, NULL, trial);
-    trial->kernels->normal(&x->bundle, trial, with_table, n > 1 + 4 * fit->lobe_count, &normal);
+    WEFT_DISPATCH(weft_fit_normal)(&x->bundle, trial, with_table, n > 1 + 4 * fit->lobe_count, &normal);
     return normal;
 }
 
@@ -278,7 +278,8 @@ static void linear_derivatives_follow_from_the_same_sums(void **state)
             const weft_linear linear = weft_linear_of_fit(&other);
             const weft_trial *trial = &x->workspace->trial[0];
             normal.n = n;
-            double residual = trial->kernels->linear_normal(&x->bundle, trial, with_table, &linear, normal.h, normal.g);
+            double residual =
+                WEFT_DISPATCH(weft_linear_normal)(&x->bundle, trial, with_table, &linear, normal.h, normal.g);
             compare(&e, &normal);
             expect_near("residual", 0, 0, residual, e.residual, x->samples.energy[WEFT_GREY]);
         }
