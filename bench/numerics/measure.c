@@ -1,4 +1,4 @@
-#include "bench/numerics/measure.h"
+#include "bench/numerics/claims.h"
 
 #include <float.h>
 #include <math.h>
@@ -8,8 +8,14 @@
 /* Below these a value has no relative accuracy, as it is no normal number or about to become one. */
 static const double least_single = 1e-30, least_double = 1e-290;
 
-/* An error larger than this may be a jump of the function. */
+/* An error larger than this, or than what is claimed, may be a jump of the function. */
 static const double suspicious = 1e-3;
+
+static double least_jump(const numerics_set *set, numerics_id id)
+{
+    double claimed = numerics_bound(set, id, NUMERICS_RELATIVE);
+    return claimed > 0 ? fmin(claimed, suspicious) : suspicious;
+}
 
 static numerics_value exact(numerics_id id, const double *argument)
 {
@@ -102,7 +108,7 @@ numerics_error numerics_error_of_value(const numerics_set *set, numerics_id id, 
         return error;
     double size = difference(value, expected), least = set->single ? least_single : least_double;
     double typical = fmax(fmax(fabs(expected.high), expected.scale * 1e-3), least), relative = size / typical;
-    if (relative > suspicious && is_other_side(id, argument, count, set->roundoff, value, size)) {
+    if (relative > least_jump(set, id) && is_other_side(id, argument, count, set->roundoff, value, size)) {
         error.jump = true;
         return error;
     }
