@@ -5,7 +5,7 @@
 #include "base/processor.h"
 #include "compress/compress.h"
 #include "compress/fit/fit.h"
-#include "compress/run/given_frames.h"
+#include "compress/run/frames_and_opacity.h"
 #include "compress/run/group_sums.h"
 #include "compress/texel/texel.h"
 #include "tests/support/alternation.h"

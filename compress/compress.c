@@ -6,10 +6,9 @@
 #include "compress/components/components_fit.h"
 #include "compress/metadata.h"
 #include "compress/run/dense.h"
-#include "compress/run/given_frames.h"
+#include "compress/run/frames_and_opacity.h"
 #include "compress/run/memory.h"
-#include "compress/run/opacity.h"
-#include "compress/sparse/sparse_material.h"
+#include "compress/sparse/sparse.h"
 
 #include <inttypes.h>
 #include <malloc.h>
@@ -186,7 +185,7 @@ static weft_code fit_dense(fitting *work, weft_material *material, weft_compress
     return WEFT_OK;
 }
 
-/* Fields, their halves and the search of compress/sparse/search.h, from above. */
+/* Fields, their halves and the search of compress/sparse/sparse.h, from above. */
 static uint64_t sparse_bytes(const weft_dataset_layout *layout)
 {
     uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height, threads = (uint64_t)omp_get_max_threads();

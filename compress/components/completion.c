@@ -3,7 +3,6 @@
 #include "btf/direction/direction.h"
 #include "compress/components/dots.h"
 #include "compress/components/known.h"
-#include "compress/components/mean_texel.h"
 
 #include <omp.h>
 #include <stdlib.h>

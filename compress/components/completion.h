@@ -6,7 +6,7 @@
 
 #include "base/progress.h"
 #include "compress/components/training.h"
-#include "compress/kriging/choose.h"
+#include "compress/kriging/kriging.h"
 #include "compress/run/memory.h"
 
 /* Freed with weft_completion_free. */

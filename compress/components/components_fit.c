@@ -2,8 +2,8 @@
 
 #include "btf/material/component_rounding.h"
 #include "compress/components/completion.h"
-#include "compress/components/levels.h"
 #include "compress/components/model.h"
+#include "compress/components/projection.h"
 
 #include <math.h>
 #include <stdlib.h>

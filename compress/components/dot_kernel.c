@@ -12,8 +12,6 @@ enum { DOWN = 4, ACROSS = 4, STRETCH = 1024 };
 enum { DOWN = 4, ACROSS = 2, STRETCH = 1024 };
 #endif
 
-WEFT_DECLARE_DOTS(WEFT_INSTRUCTION_SET);
-
 static int least(int a, int b)
 {
     return a < b ? a : b;

@@ -1,4 +1,4 @@
-#include "compress/components/levels.h"
+#include "compress/components/projection.h"
 
 #include "compress/options/options.h"
 

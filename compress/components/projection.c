@@ -1,11 +1,13 @@
 #include "compress/components/projection.h"
 
+#include "base/real.h"
 #include "base/thread_pool.h"
-#include "compress/components/darkest.h"
-#include "compress/components/kept_blocks.h"
+#include "btf/material/components.h"
 #include "compress/run/block_plan.h"
+#include "compress/run/checkpoint.h"
 
 #include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Texels that are projected together, for the sake of the tiles of compress/components/dot_kernel.c. */
@@ -41,6 +43,55 @@ void weft_projection_free(weft_projection *projection)
     *projection = (weft_projection){0};
 }
 
+/* ---- How dark the samples of a texel get ---- */
+
+/* So many of 1000 valid samples of a texel may be darker than its floor: noise, and what lies in a hard shadow. */
+enum { CODES = 256, WHOLE = 1000, RUN = 64, DARKER_OF_1000 = 20, LEAST_IMAGES_OF_A_FLOOR = 50 };
+
+/* The code that so many samples at most lie below, by a histogram over the codes. */
+static uint8_t code_above(const int count[CODES], int below)
+{
+    int code = 0;
+    for (int sum = count[0]; sum <= below && code < CODES - 1; sum += count[code])
+        code++;
+    return (uint8_t)code;
+}
+
+/* The codes of so many images. */
+WEFT_HOT static void find_codes(const weft_component_images *images, const float *vector, size_t first, size_t length,
+                                uint8_t code[3 * RUN])
+{
+    float divisor[3 * RUN];
+    for (size_t i = 0; i < length; i++) {
+        float of_image = images->weight[first + i] * images->height[first + i];
+        divisor[3 * i] = divisor[3 * i + 1] = divisor[3 * i + 2] = of_image;
+    }
+    for (size_t i = 0; i < 3 * length; i++)
+        code[i] = weft_floor_code(vector[3 * first + i] / divisor[i]);
+}
+
+/* The reflectance in each channel that all but 2 % of the valid samples reach, rounded down to what weft_floor_of_code
+ * gives; 0 where there are too few. */
+static void find_floor(const weft_component_images *images, const float *vector, const uint8_t *valid, float floor[3])
+{
+    int count[3][CODES] = {{0}}, samples = 0;
+    size_t all = (size_t)images->image_count;
+    for (size_t first = 0; first < all; first += RUN) {
+        uint8_t code[3 * RUN];
+        size_t length = all - first < RUN ? all - first : RUN;
+        find_codes(images, vector, first, length, code);
+        for (size_t i = 0; i < length; i++) {
+            int known = valid[first + i] != 0;
+            samples += known;
+            for (size_t c = 0; c < 3; c++)
+                count[c][code[3 * i + c]] += known;
+        }
+    }
+    int below = (int)((long)samples * DARKER_OF_1000 / WHOLE);
+    for (int c = 0; c < 3; c++)
+        floor[c] = samples < LEAST_IMAGES_OF_A_FLOOR ? 0 : weft_floor_of_code(code_above(count[c], below));
+}
+
 /* ---- A block ---- */
 
 /* Of numbers: fmaxf, which is a call, looks for what is none. */
@@ -72,7 +123,7 @@ static void gather(const run *r, const weft_component_images *seen, worker *own,
         own->empty += valid == 0;
         size_t texel = ((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x;
         r->projection->brightest[texel] = brightest(r->images, vector);
-        weft_floor_of_texel(seen, vector, own->valid + i * images, r->projection->floor + 3 * texel);
+        find_floor(seen, vector, own->valid + i * images, r->projection->floor + 3 * texel);
     }
 }
 
@@ -120,6 +171,70 @@ static void project_batch(void *context, long item, int thread)
         for (int k = 0; k < components; k++)
             to[k] = coefficient[i * components + k];
     }
+}
+
+/* ---- Blocks in the checkpoint of a compression ---- */
+
+/* What was counted belongs to all blocks so far. */
+static void transfer_block(weft_projection *projection, const weft_block_place *place, weft_record *record)
+{
+    size_t columns = (size_t)place->width, components = (size_t)projection->component_count;
+    for (int y = place->y; y < place->y + place->height; y++) {
+        size_t first = (size_t)y * (size_t)projection->width + (size_t)place->x;
+        weft_record_transfer(record, projection->coefficient + first * components,
+                             columns * components * sizeof(float));
+        weft_record_transfer(record, projection->brightest + first, columns * sizeof(float));
+        weft_record_transfer(record, projection->floor + 3 * first, 3 * columns * sizeof(float));
+    }
+    weft_record_transfer(record, &projection->masked, sizeof projection->masked);
+    weft_record_transfer(record, &projection->empty, sizeof projection->empty);
+}
+
+static weft_code take_block(weft_checkpoint *checkpoint, const weft_block_place *place, weft_projection *projection,
+                            weft_error *error)
+{
+    weft_record record = {0};
+    weft_code code = weft_checkpoint_read(checkpoint, &record, error);
+    if (code == WEFT_OK) {
+        transfer_block(projection, place, &record);
+        if (record.failed || record.at != record.size)
+            code =
+                weft_fail(error, WEFT_BAD_INPUT, "'%s': a record of components does not fit its block; remove the file",
+                          weft_checkpoint_path(checkpoint));
+    }
+    free(record.bytes);
+    return code;
+}
+
+/* Fills the projection with the blocks of `plan` that are kept and unread, and says how many they are. */
+static weft_code take_kept_blocks(weft_checkpoint *checkpoint, const weft_log *log, const weft_block_plan *plan,
+                                  weft_projection *projection, size_t *count, weft_error *error)
+{
+    *count = 0;
+    if (!checkpoint)
+        return WEFT_OK;
+    for (; *count < plan->count && weft_checkpoint_unread(checkpoint) > 0; (*count)++)
+        WEFT_TRY(take_block(checkpoint, &plan->place[*count], projection, error));
+    if (*count > 0) {
+        char text[WEFT_MESSAGE_SIZE];
+        snprintf(text, sizeof text, "going on after %zu of %zu blocks of components, kept in %s", *count, plan->count,
+                 weft_checkpoint_path(checkpoint));
+        weft_log_line(log, text);
+    }
+    return WEFT_OK;
+}
+
+static weft_code keep_block(weft_checkpoint *checkpoint, weft_projection *projection, const weft_block_place *place,
+                            weft_error *error)
+{
+    if (!checkpoint)
+        return WEFT_OK;
+    weft_record record = {0};
+    transfer_block(projection, place, &record);
+    weft_code code = record.failed ? weft_fail_memory(error, "record of a block", record.size)
+                                   : weft_checkpoint_append(checkpoint, &record, error);
+    free(record.bytes);
+    return code;
 }
 
 /* ---- The run ---- */
@@ -178,7 +293,7 @@ static weft_code project_blocks(run *r, weft_block_reader *reader, weft_thread_p
         long texels = (long)r->block->place.width * r->block->place.height;
         weft_thread_pool_run(pool, project_batch, r, (texels + BATCH - 1) / BATCH);
         WEFT_TRY(collect(r, error));
-        WEFT_TRY(weft_kept_blocks_add(job->checkpoint, r->projection, &r->block->place, error));
+        WEFT_TRY(keep_block(job->checkpoint, r->projection, &r->block->place, error));
     }
     weft_progress_report(job->progress, "projecting on components", total, total);
     return WEFT_OK;
@@ -213,7 +328,7 @@ static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *p
     weft_block_reader *reader = NULL;
     weft_thread_pool *pool = NULL;
     size_t first;
-    WEFT_TRY(weft_kept_blocks_take(job->checkpoint, job->log, plan, r->projection, &first, error));
+    WEFT_TRY(take_kept_blocks(job->checkpoint, job->log, plan, r->projection, &first, error));
     r->projection->block_count = (long)plan->count;
     r->projection->resumed_block_count = (long)first;
     WEFT_TRY(weft_block_reader_create(dataset, plan->place + first, plan->count - first, block_texels, &reader, error));

@@ -1,4 +1,4 @@
-/* The passes over the samples; see compress/fit/gram.h. */
+/* The passes over the samples; see compress/fit/normal.h. */
 #include "compress/fit/kernels.h"
 
 #include "base/lanes.h"

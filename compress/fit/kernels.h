@@ -6,7 +6,7 @@
 #include "compress/fit/error_tally.h"
 #include "compress/fit/normal.h"
 
-/* What compress/fit/screen.h tries lobes with: arrays [sample_count], of which the samples of a part are filled, and
+/* What compress/fit/screen.c tries lobes with: arrays [sample_count], of which the samples of a part are filled, and
  * <f|f> by view. */
 enum { WEFT_SCREEN_EXPONENTS = 7 /* 1, 4, 16, ... 4096 */ };
 typedef struct weft_screen {
@@ -22,7 +22,7 @@ typedef struct weft_screen_sums {
 
 /* The kernels of one set, called by WEFT_DISPATCH (base/processor.h):
  *
- * gram_accumulate: sums [WEFT_GRAM_PRODUCTS][view_stride], products of columns (see compress/fit/gram.h) summed over
+ * gram_accumulate: sums [WEFT_GRAM_PRODUCTS][view_stride], products of columns (see compress/fit/normal.h) summed over
  * the samples of each view in a part of its slots. table [view_stride] is T(v) in e. Views without samples keep what
  *     their sums were.
  * gram_evaluate: k (rho + sum_i A_i b_i^N_i) of the samples of a part, without T: result [sample_count].
@@ -31,7 +31,7 @@ typedef struct weft_screen_sums {
  *     [sample_count] times table [view_stride] leaves of them.
  * gather_brightest: the largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples
  * that count. screen_load: from screen->model = k f, without T, to all of `screen` but `negligible`. Returns the sum of
- * T^2 <f|f>. screen_try: lobes of one shape M (compress/fit/gram.h) and all exponents. linear_digest: the linear rows
+ * T^2 <f|f>. screen_try: lobes of one shape M (compress/fit/normal.h) and all exponents. linear_digest: the linear rows
  * of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. linear_residual: the
  * residual at other linear parameters than those of the pass; their T into table [view_stride]. linear_normal: the same
  * residual, and normal equations of the linear parameters alone, T eliminated: h [n][n], g [n]. fit_normal: see

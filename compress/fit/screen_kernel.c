@@ -1,4 +1,4 @@
-/* The sums of compress/fit/screen.h. */
+/* The sums of compress/fit/screen.c. */
 #include "compress/fit/kernels.h"
 
 #include "base/lanes.h"

@@ -1,4 +1,4 @@
-#include "compress/kriging/choose.h"
+#include "compress/kriging/kriging.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #define WEFT_COMPRESS_RUN_FITTED_H
 
 #include "compress/run/block_reader.h"
-#include "compress/run/record.h"
+#include "compress/run/checkpoint.h"
 #include "compress/texel/texel.h"
 
 /* Sums are kept by texel and added up at the end in the order of the texels, so that neither threads nor blocks leave a

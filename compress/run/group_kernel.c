@@ -1,13 +1,11 @@
 /* The loops of compress/run/group_sums.h that touch every sample. */
-#include "compress/run/group_kernel.h"
+#include "compress/run/group_sums.h"
 
 #include "base/lanes.h"
 
 #if defined(__F16C__)
 #include <immintrin.h>
 #endif
-
-WEFT_DECLARE_GROUP_KERNELS(WEFT_INSTRUCTION_SET);
 
 void WEFT_KERNEL(weft_group_convert)(const weft_half *half, size_t count, float *result)
 {

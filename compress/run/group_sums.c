@@ -1,16 +1,6 @@
 #include "compress/run/group_sums.h"
 
-#include "base/processor.h"
-#include "compress/run/group_kernel.h"
-
 #include <string.h>
-
-WEFT_FOR_EACH_SET(WEFT_DECLARE_GROUP_KERNELS);
-
-static void convert(const weft_half *half, size_t count, float *result)
-{
-    WEFT_DISPATCH(weft_group_convert)(half, count, result);
-}
 
 /* Forgets the samples that do not count. */
 static long drop_masked(const uint8_t *mask, const uint8_t *held_out, size_t image_count, float *group)
@@ -31,7 +21,7 @@ static long drop_masked(const uint8_t *mask, const uint8_t *held_out, size_t ima
 long weft_group_of_texel(const weft_half *samples, const uint8_t *mask, const uint8_t *held_out, size_t image_count,
                          float *group)
 {
-    convert(samples, 3 * image_count, group);
+    WEFT_DISPATCH(weft_group_convert)(samples, 3 * image_count, group);
     unsigned any = held_out != NULL;
     for (size_t i = 0; i < image_count; i++) {
         group[3 * image_count + i] = 1;

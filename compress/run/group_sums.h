@@ -4,6 +4,7 @@
 #define WEFT_COMPRESS_RUN_GROUP_SUMS_H
 
 #include "base/half.h"
+#include "base/processor.h"
 
 #include <stddef.h>
 
@@ -16,5 +17,12 @@ long weft_group_of_texel(const weft_half *samples, const uint8_t *mask, const ui
 
 /* Adds a group to another. */
 void weft_group_add(const float *from, size_t image_count, float *to);
+
+/* The loops over the samples, for each instruction set: halves as floats, and the sum of two groups. */
+#define WEFT_DECLARE_GROUP_KERNELS(set)                                                                                \
+    void weft_group_convert_##set(const weft_half *half, size_t count, float *result);                                 \
+    void weft_group_accumulate_##set(const float *from, size_t count, float *to)
+
+WEFT_FOR_EACH_SET(WEFT_DECLARE_GROUP_KERNELS);
 
 #endif

@@ -1,4 +1,4 @@
-#include "compress/sparse/field.h"
+#include "compress/sparse/sparse.h"
 
 #include "base/integers.h"
 

@@ -1,4 +1,4 @@
-#include "compress/sparse/search.h"
+#include "compress/sparse/sparse.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,7 +1,6 @@
 #include "compress/sparse/sparse.h"
 
 #include "base/numeric/error_summary.h"
-#include "compress/sparse/search.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "compress/sparse/sparse_material.h"
+#include "compress/sparse/sparse.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Frames that a dataset gives: where they go, and what they are good for. */
 #include "btf/dataset/dataset.h"
 #include "compress/compress.h"
-#include "compress/run/given_frames.h"
+#include "compress/run/frames_and_opacity.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/synthetic_texel.h"
 

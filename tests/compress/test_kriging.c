@@ -1,7 +1,7 @@
 /* Kriging against what it is said to be: its covariance written down again, and images that really are left out. */
 #include "tests/support/cmocka_all.h"
 
-#include "compress/kriging/choose.h"
+#include "compress/kriging/kriging.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <math.h>

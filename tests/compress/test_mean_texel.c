@@ -1,7 +1,7 @@
 /* The mean over texels, and what is said of texels once it is imposed on them. */
 #include "tests/support/cmocka_all.h"
 
-#include "compress/components/mean_texel.h"
+#include "compress/components/known.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <math.h>
