@@ -181,7 +181,6 @@ static void report_seam(const weft_compressed *done)
 
 static void report_sizes(const weft_compressed *done)
 {
-    const weft_compress_report *report = done->report;
     const weft_dataset_layout *layout = weft_dataset_get_layout(done->dataset);
     double samples = 6.0 * layout->width * layout->height * layout->image_count;
     double material = (double)weft_file_bytes(done->output);
@@ -192,11 +191,7 @@ static void report_sizes(const weft_compressed *done)
         snprintf(share, sizeof share, "%.1f times the size", material / samples);
     weft_command_say(done->common, "%s: %.2f MB, %s of the samples as half floats (%.1f MB; the file has %.1f MB)",
                      done->output, material * 1e-6, share, samples * 1e-6, (double)weft_file_bytes(done->input) * 1e-6);
-    if (report->read_seconds > 0)
-        weft_command_say(done->common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",
-                         report->read_bytes * 1e-6, report->block_count - report->resumed_block_count,
-                         report->read_bytes * 1e-6 / report->read_seconds, report->starved_seconds);
-    weft_command_say(done->common, "fitted in %.1f s", report->seconds);
+    weft_command_say(done->common, "fitted in %.1f s", done->report->seconds);
 }
 
 /* "12.3 ms a frame (81 frames/s)", or "" where nothing was drawn. */

@@ -148,13 +148,6 @@ static void take_counts(const weft_texel_counts *counts, weft_compress_report *r
     report->empty_texel_count = counts->empty;
 }
 
-static void take_times(const weft_block_reader_times *times, weft_compress_report *report)
-{
-    report->read_bytes = (double)times->bytes;
-    report->read_seconds = times->reading;
-    report->starved_seconds = times->starving;
-}
-
 static weft_code fit_dense(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_compress_options *options = work->options;
@@ -178,10 +171,7 @@ static weft_code fit_dense(fitting *work, weft_material *material, weft_compress
     /* What is free is given back to the system, so that writing the material has room. */
     malloc_trim(0);
     take_counts(&result.counts, report);
-    take_times(&result.times, report);
     report->masked_count = result.masked;
-    report->block_count = (long)result.block_count;
-    report->resumed_block_count = (long)result.resumed_block_count;
     return WEFT_OK;
 }
 
@@ -240,9 +230,6 @@ static weft_code fit_components(fitting *work, weft_material *material, weft_com
     report->texel_count = (long)material->level[0].width * material->level[0].height;
     report->empty_texel_count = own->empty_texels;
     report->masked_count = own->masked;
-    report->block_count = own->block_count;
-    report->resumed_block_count = own->resumed_block_count;
-    take_times(&own->times, report);
     return given->heights ? weft_compress_take_heights(work->dataset, material, error) : WEFT_OK;
 }
 

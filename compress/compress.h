@@ -17,18 +17,13 @@ typedef enum weft_compress_model {
 
 typedef struct weft_compress_report {
     weft_compress_model model;
-    int lobe_count;          /* of the material */
-    long sample_count;       /* of level 0: texels times images that were not held out */
-    long masked_count;       /* of these, not used: masked, not finite, or light below the horizon */
-    long texel_count;        /* that were fitted: of all levels, of components those of level 0 */
-    long empty_texel_count;  /* of these, without any valid sample; they are black */
+    int lobe_count;                    /* of the material */
+    long sample_count;                 /* of level 0: texels times images that were not held out */
+    long masked_count;                 /* of these, not used: masked, not finite, or light below the horizon */
+    long texel_count;                  /* that were fitted: of all levels, of components those of level 0 */
+    long empty_texel_count;            /* of these, without any valid sample; they are black */
     weft_components_report components; /* where there are any */
     double seconds;
-    long block_count;         /* of the dataset; 0 of a sparse model, which reads rows */
-    long resumed_block_count; /* of these, taken from the checkpoint */
-    double read_bytes;        /* of samples and masks */
-    double read_seconds;      /* that the reading thread read */
-    double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
 /* The options with WEFT_COMPONENTS_AUTOMATIC decided: 8 components for fewer than 20 images, 16 for fewer than 100,

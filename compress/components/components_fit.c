@@ -163,9 +163,6 @@ static weft_code project(fitting *work, weft_components_report *report, weft_err
     weft_component_maps_free(&work->maps);
     report->masked = work->projection.masked;
     report->empty_texels = work->projection.empty;
-    report->block_count = work->projection.block_count;
-    report->resumed_block_count = work->projection.resumed_block_count;
-    report->times = work->projection.times;
     if (code == WEFT_OK && work->options->finer)
         code = weft_component_model_double(&work->components, error);
     if (code == WEFT_OK)

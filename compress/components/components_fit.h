@@ -8,7 +8,6 @@
 #include "btf/material/material.h"
 #include "compress/kriging/covariance.h"
 #include "compress/options/options.h"
-#include "compress/run/block_reader.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
 
@@ -41,8 +40,6 @@ typedef struct weft_components_report {
     double rounding_step;       /* of values and coefficients; 0: they are not rounded */
     int training_texels;
     long masked, empty_texels;
-    long block_count, resumed_block_count;
-    weft_block_reader_times times;
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
 } weft_components_report;
 

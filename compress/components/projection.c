@@ -329,15 +329,12 @@ static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *p
     weft_thread_pool *pool = NULL;
     size_t first;
     WEFT_TRY(take_kept_blocks(job->checkpoint, job->log, plan, r->projection, &first, error));
-    r->projection->block_count = (long)plan->count;
-    r->projection->resumed_block_count = (long)first;
     WEFT_TRY(weft_block_reader_create(dataset, plan->place + first, plan->count - first, block_texels, &reader, error));
     weft_code code = weft_thread_pool_create(r->thread_count, &pool, error);
     if (code == WEFT_OK)
         code = create_workers(r, weft_dataset_get_layout(dataset), error);
     if (code == WEFT_OK)
         code = project_blocks(r, reader, pool, plan, first, job, error);
-    r->projection->times = weft_block_reader_get_times(reader);
     free_workers(r);
     weft_thread_pool_free(pool);
     weft_block_reader_free(reader);

@@ -17,8 +17,6 @@ typedef struct weft_projection {
     float *floor;       /* [height][width][3] what all but 2 % of the valid samples of the texel reach */
     long masked;        /* samples */
     long empty;         /* texels without any */
-    long block_count, resumed_block_count; /* resumed: taken from the checkpoint */
-    weft_block_reader_times times;
 } weft_projection;
 
 /* How to go about it; no part of it changes a bit of the result. */

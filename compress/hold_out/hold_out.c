@@ -17,9 +17,17 @@ static const double certified = 0.95;
 
 /* ---- The fits ---- */
 
-typedef struct held_and_fitted {
-    weft_residuals held, fitted;
-} held_and_fitted;
+/* A material is seen as it is, or through the heights of the dataset. */
+enum { FLAT, THROUGH_HEIGHTS, WAYS };
+
+/* What all splits say of the material, seen in one way. */
+typedef struct answers {
+    weft_hold_out_error error;
+    weft_error_summary fitted;
+    weft_means_taken error_taken;
+    int fitted_taken;
+    weft_residuals held_residuals, fitted_residuals;
+} answers;
 
 /* The whole measurement at work. */
 typedef struct measuring {
@@ -27,18 +35,15 @@ typedef struct measuring {
     weft_compress_options options; /* of the fits without some images */
     const char *scratch_path;
     weft_measured_texels texels;
-    bool asks_heights; /* of components, whether they are to be seen through the surface of the texels */
+    int way_count; /* in which components are seen */
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
-    weft_hold_out_error flat; /* of the material without heights, where it has been asked with them */
-    weft_error_summary flat_fitted;
-    weft_means_taken material_taken, flat_taken, photographs_taken;
-    int fitted_taken, flat_fitted_taken;
-    int measured_count;                        /* of the splits: the first ones */
-    bool takes_errors;                         /* of these texels */
-    int first_level, last_level;               /* of these texels, whose residuals are taken */
-    held_and_fitted residuals, flat_residuals; /* flat: the same without heights */
+    answers said[WAYS];
+    weft_means_taken photographs_taken;
+    int measured_count;          /* of the splits: the first ones */
+    bool takes_errors;           /* of these texels */
+    int first_level, last_level; /* of these texels, whose residuals are taken */
     weft_hold_out *result;
 } measuring;
 
@@ -52,24 +57,19 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
     return code;
 }
 
-/* What one split says. */
-typedef struct answers {
-    weft_asked_samples material, fitted, photographs;
-    weft_asked_samples photographs_flat;              /* where `photographs` are seen through a surface */
-    weft_asked_samples moved;                         /* the material, its stored numbers moved by a step each */
-    weft_asked_samples flat, flat_fitted, flat_moved; /* without heights, where `material` is with them */
-} answers;
+/* What one split says of the material, seen in each way. */
+typedef struct split_answers {
+    weft_asked_samples held[WAYS], fitted[WAYS];
+    weft_asked_samples moved[WAYS]; /* the held ones of a material whose stored numbers were moved by a step each */
+} split_answers;
 
-static void free_answers(answers *said)
+static void free_answers(split_answers *said)
 {
-    weft_asked_samples_free(&said->material);
-    weft_asked_samples_free(&said->fitted);
-    weft_asked_samples_free(&said->photographs);
-    weft_asked_samples_free(&said->photographs_flat);
-    weft_asked_samples_free(&said->moved);
-    weft_asked_samples_free(&said->flat);
-    weft_asked_samples_free(&said->flat_fitted);
-    weft_asked_samples_free(&said->flat_moved);
+    for (int way = 0; way < WAYS; way++) {
+        weft_asked_samples_free(&said->held[way]);
+        weft_asked_samples_free(&said->fitted[way]);
+        weft_asked_samples_free(&said->moved[way]);
+    }
 }
 
 static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
@@ -83,33 +83,27 @@ static weft_code ask_material(const measuring *work, const weft_trial *trial, co
     return code;
 }
 
-/* What storage does to it. The material is another one afterwards, without heights. */
-static weft_code ask_moved(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
-                           weft_error *error)
-{
-    weft_trial held_alone = *trial;
-    weft_asked_samples none = {0};
-    held_alone.fitted_count = 0;
-    weft_material_move_by_steps(material);
-    weft_code code = ask_material(work, &held_alone, material, &said->moved, &none, error);
-    weft_asked_samples_free(&none);
-    if (code != WEFT_OK || !material->heights)
-        return code;
-    weft_material_take_heights(material, NULL);
-    code = ask_material(work, &held_alone, material, &said->flat_moved, &none, error);
-    weft_asked_samples_free(&none);
-    return code;
-}
-
-static weft_code ask(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
+/* Also what storage does to it: the material is another one afterwards, without heights. */
+static weft_code ask(const measuring *work, const weft_trial *trial, weft_material *material, split_answers *said,
                      weft_error *error)
 {
-    if (work->asks_heights && material->components) {
-        WEFT_TRY(ask_material(work, trial, material, &said->flat, &said->flat_fitted, error));
-        WEFT_TRY(weft_excerpt_give_heights(&work->texels.excerpt, material, error));
+    weft_trial held_alone = *trial;
+    held_alone.fitted_count = 0;
+    for (int way = 0; way < work->way_count; way++) {
+        if (way == THROUGH_HEIGHTS)
+            WEFT_TRY(weft_excerpt_give_heights(&work->texels.excerpt, material, error));
+        WEFT_TRY(ask_material(work, trial, material, &said->held[way], &said->fitted[way], error));
     }
-    WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
-    return ask_moved(work, trial, material, said, error);
+    weft_material_move_by_steps(material);
+    for (int way = work->way_count - 1; way >= 0; way--) {
+        weft_asked_samples none = {0};
+        if (way == FLAT && material->heights)
+            weft_material_take_heights(material, NULL);
+        weft_code code = ask_material(work, &held_alone, material, &said->moved[way], &none, error);
+        weft_asked_samples_free(&none);
+        WEFT_TRY(code);
+    }
+    return WEFT_OK;
 }
 
 /* Relative RMSE with and without heights where both are known. Samples ascend in both; masks may leave either without
@@ -133,18 +127,27 @@ static void compare_with_flat(const weft_asked_samples *with, const weft_asked_s
     error_of[1] = sqrt(square[1] / energy);
 }
 
-static weft_code take_flat(measuring *work, const answers *said, weft_error *error)
+/* Seen in one way. */
+static weft_code take_errors(const weft_asked_samples *held, const weft_asked_samples *fitted, answers *all,
+                             weft_error *error)
 {
-    weft_hold_out_error flat;
-    weft_error_summary fitted;
+    weft_hold_out_error held_error;
+    weft_error_summary fitted_error;
+    WEFT_TRY(weft_hold_out_summarise(held, &held_error, error));
+    WEFT_TRY(weft_error_summary_of(fitted->value, fitted->count, &fitted_error, error));
+    weft_hold_out_take(&held_error, &all->error_taken, &all->error);
+    weft_summary_take(&fitted_error, &all->fitted_taken, &all->fitted);
+    return WEFT_OK;
+}
+
+static weft_code take_answers(measuring *work, const split_answers *said, weft_error *error)
+{
     double error_of[2];
-    if (!said->flat.value)
+    for (int way = 0; way < work->way_count; way++)
+        WEFT_TRY(take_errors(&said->held[way], &said->fitted[way], &work->said[way], error));
+    if (work->way_count < WAYS)
         return WEFT_OK;
-    WEFT_TRY(weft_hold_out_summarise(&said->flat, &flat, error));
-    WEFT_TRY(weft_error_summary_of(said->flat_fitted.value, said->flat_fitted.count, &fitted, error));
-    weft_hold_out_take(&flat, &work->flat_taken, &work->flat);
-    weft_summary_take(&fitted, &work->flat_fitted_taken, &work->flat_fitted);
-    compare_with_flat(&said->material, &said->flat, error_of);
+    compare_with_flat(&said->held[THROUGH_HEIGHTS], &said->held[FLAT], error_of);
     work->result->heights.asked = true;
     work->result->heights.with += error_of[0] / work->measured_count;
     work->result->heights.without += error_of[1] / work->measured_count;
@@ -152,37 +155,15 @@ static weft_code take_flat(measuring *work, const answers *said, weft_error *err
 }
 
 /* What is said of the material is what is played of it. */
-static void decide_on_heights(measuring *work)
+static const answers *decide_on_heights(const measuring *work)
 {
     weft_hold_out_heights *heights = &work->result->heights;
-    heights->used = heights->asked && work->result->material.all.count > 0 &&
+    heights->used = heights->asked && work->said[THROUGH_HEIGHTS].error.all.count > 0 &&
                     heights->with <= WEFT_HOLD_OUT_HEIGHTS_GAIN * heights->without;
-    if (!heights->asked || heights->used)
-        return;
-    work->result->material = work->flat;
-    work->result->fitted = work->flat_fitted;
+    return &work->said[heights->used ? THROUGH_HEIGHTS : FLAT];
 }
 
-static weft_code take_answers(measuring *work, const answers *said, weft_error *error)
-{
-    weft_hold_out_error material;
-    weft_error_summary fitted;
-    WEFT_TRY(weft_hold_out_summarise(&said->material, &material, error));
-    WEFT_TRY(weft_error_summary_of(said->fitted.value, said->fitted.count, &fitted, error));
-    weft_hold_out_take(&material, &work->material_taken, &work->result->material);
-    weft_summary_take(&fitted, &work->fitted_taken, &work->result->fitted);
-    return take_flat(work, said, error);
-}
-
-static void free_residuals(held_and_fitted *residuals)
-{
-    weft_residuals_free(&residuals->held);
-    weft_residuals_free(&residuals->fitted);
-}
-
-static weft_code add_residuals(const measuring *work, int split, const weft_asked_samples *material,
-                               const weft_asked_samples *moved, const weft_asked_samples *fitted,
-                               held_and_fitted *residuals, weft_error *error)
+static weft_code take_residuals(measuring *work, int split, const split_answers *said, weft_error *error)
 {
     const weft_excerpt *excerpt = &work->texels.excerpt;
     const weft_residuals_taken taken = {.first_image = (uint32_t)split * (uint32_t)work->splits.image_count,
@@ -190,27 +171,25 @@ static weft_code add_residuals(const measuring *work, int split, const weft_aske
                                         .first_level = work->first_level,
                                         .last_level = work->last_level,
                                         .level = work->texels.level};
-    WEFT_TRY(weft_residuals_add(&residuals->held, excerpt, material, moved, &taken, error));
-    return weft_residuals_add(&residuals->fitted, excerpt, fitted, NULL, &taken, error);
+    for (int way = 0; way < work->way_count; way++) {
+        answers *all = &work->said[way];
+        WEFT_TRY(weft_residuals_add(&all->held_residuals, excerpt, &said->held[way], &said->moved[way], &taken, error));
+        WEFT_TRY(weft_residuals_add(&all->fitted_residuals, excerpt, &said->fitted[way], NULL, &taken, error));
+    }
+    return WEFT_OK;
 }
 
-static weft_code take_residuals(measuring *work, int split, const answers *said, weft_error *error)
+/* `flat`: without the surface through which `photographs` are seen, where there is one. */
+static weft_code take_photographs(measuring *work, const weft_asked_samples *photographs,
+                                  const weft_asked_samples *flat, weft_error *error)
 {
-    WEFT_TRY(add_residuals(work, split, &said->material, &said->moved, &said->fitted, &work->residuals, error));
-    if (!said->flat.value)
-        return WEFT_OK;
-    return add_residuals(work, split, &said->flat, &said->flat_moved, &said->flat_fitted, &work->flat_residuals, error);
-}
-
-static weft_code take_photographs(measuring *work, const answers *said, weft_error *error)
-{
-    weft_hold_out_error photographs;
+    weft_hold_out_error own;
     double error_of[2];
-    WEFT_TRY(weft_hold_out_summarise(&said->photographs, &photographs, error));
-    weft_hold_out_take(&photographs, &work->photographs_taken, &work->result->photographs);
-    if (!said->photographs_flat.value)
+    WEFT_TRY(weft_hold_out_summarise(photographs, &own, error));
+    weft_hold_out_take(&own, &work->photographs_taken, &work->result->photographs);
+    if (!flat->value)
         return WEFT_OK;
-    compare_with_flat(&said->photographs, &said->photographs_flat, error_of);
+    compare_with_flat(photographs, flat, error_of);
     work->result->photographs_flat += error_of[1] / work->measured_count;
     return WEFT_OK;
 }
@@ -218,19 +197,20 @@ static weft_code take_photographs(measuring *work, const answers *said, weft_err
 /* Before the material is asked, so that what they say is not in memory beside what it says. */
 static weft_code ask_photographs(measuring *work, const weft_trial *trial, weft_error *error)
 {
-    answers said = {0};
+    weft_asked_samples photographs = {0}, flat = {0};
     bool has_surface = weft_excerpt_has_surface(&work->texels.excerpt);
-    weft_code code = has_surface ? weft_trial_ask_photographs(trial, false, &said.photographs_flat, error) : WEFT_OK;
+    weft_code code = has_surface ? weft_trial_ask_photographs(trial, false, &flat, error) : WEFT_OK;
     if (code == WEFT_OK)
-        code = weft_trial_ask_photographs(trial, has_surface, &said.photographs, error);
+        code = weft_trial_ask_photographs(trial, has_surface, &photographs, error);
     if (code == WEFT_OK)
-        code = take_photographs(work, &said, error);
-    free_answers(&said);
+        code = take_photographs(work, &photographs, &flat, error);
+    weft_asked_samples_free(&photographs);
+    weft_asked_samples_free(&flat);
     malloc_trim(0);
     return code;
 }
 
-static weft_code ask_split(measuring *work, int split, answers *said, weft_error *error)
+static weft_code ask_split(measuring *work, int split, split_answers *said, weft_error *error)
 {
     const uint8_t *held = weft_splits_held(&work->splits, split);
     const uint8_t *next = weft_splits_held(&work->splits, (split + 1) % work->splits.count);
@@ -255,7 +235,7 @@ static weft_code ask_split(measuring *work, int split, answers *said, weft_error
 /* One thing after the other goes, since memory is promised (--memory). */
 static weft_code measure_split(measuring *work, int split, weft_error *error)
 {
-    answers said = {0};
+    split_answers said = {0};
     weft_code code = ask_split(work, split, &said, error);
     if (code == WEFT_OK && work->takes_errors)
         code = take_answers(work, &said, error);
@@ -276,13 +256,11 @@ static int held_directions(const measuring *work)
                    : work->result->certificate.image_count;
 }
 
-static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *error)
+static weft_code certify(weft_dataset *dataset, const measuring *work, const answers *by, weft_error *error)
 {
     weft_hold_out *result = work->result;
-    bool is_flat = result->heights.asked && !result->heights.used;
-    const held_and_fitted *by = is_flat ? &work->flat_residuals : &work->residuals;
-    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->texels.spacing, work->texels.neighbours,
-                          &result->certificate, &result->has_certificate, error));
+    WEFT_TRY(weft_certify(&by->held_residuals, &by->fitted_residuals, certified, work->texels.spacing,
+                          work->texels.neighbours, &result->certificate, &result->has_certificate, error));
     result->certificate.direction_count = held_directions(work);
     return result->has_certificate ? weft_certify_registration(dataset, &result->certificate, error) : WEFT_OK;
 }
@@ -347,7 +325,8 @@ static weft_code measure_neighbours(weft_dataset *dataset, measuring *work, cons
     work->last_level = WEFT_RESIDUAL_LEVELS - 1;
     WEFT_TRY(weft_measured_texels_read(dataset, &work->options, &work->splits, &work->texels, error));
     describe(weft_dataset_get_layout(dataset), work);
-    work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->texels.excerpt);
+    if (work->given->heights && work->options.component_count > 0 && weft_excerpt_has_surface(&work->texels.excerpt))
+        work->way_count = WAYS;
     return measure_texels(work, progress, error);
 }
 
@@ -359,17 +338,20 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
         WEFT_TRY(measure_spread_texels(dataset, work, progress, error));
     else
         WEFT_TRY(measure_neighbours(dataset, work, progress, error));
-    decide_on_heights(work);
-    if (work->result->material.all.count == 0)
+    const answers *played = decide_on_heights(work);
+    work->result->material = played->error;
+    work->result->fitted = played->fitted;
+    if (played->error.all.count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
-    return certify(dataset, work, error);
+    return certify(dataset, work, played, error);
 }
 
 weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_options *options, int split_count,
                                 const char *scratch_path, const weft_progress *progress, weft_hold_out *result,
                                 weft_error *error)
 {
-    measuring work = {.given = options, .options = *options, .scratch_path = scratch_path, .result = result};
+    measuring work = {
+        .given = options, .options = *options, .scratch_path = scratch_path, .way_count = 1, .result = result};
     work.options.levels = work.options.heights = false;
     work.options.held_out = NULL;
     work.options.checkpoint_path = NULL;
@@ -380,8 +362,10 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
     work.measured_count = each || split_count > work.splits.count ? work.splits.count : split_count;
     if (code == WEFT_OK)
         code = measure_splits(dataset, &work, progress, error);
-    free_residuals(&work.residuals);
-    free_residuals(&work.flat_residuals);
+    for (int way = 0; way < WAYS; way++) {
+        weft_residuals_free(&work.said[way].held_residuals);
+        weft_residuals_free(&work.said[way].fitted_residuals);
+    }
     weft_measured_texels_free(&work.texels);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */

@@ -1,7 +1,5 @@
 #include "compress/run/block_reader.h"
 
-#include "base/clock.h"
-
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -23,17 +21,11 @@ struct weft_block_reader {
     bool stop;
     weft_code code;
     weft_error error;
-    weft_block_reader_times times;
 };
-
-static uint64_t texel_bytes(const weft_dataset_layout *layout)
-{
-    return (uint64_t)layout->image_count * (3 * sizeof(weft_half) + sizeof(uint8_t));
-}
 
 uint64_t weft_block_reader_bytes(const weft_dataset_layout *layout, size_t texels)
 {
-    return SLOTS * texels * texel_bytes(layout);
+    return SLOTS * texels * (uint64_t)layout->image_count * (3 * sizeof(weft_half) + sizeof(uint8_t));
 }
 
 /* ---- The reading thread ---- */
@@ -53,14 +45,10 @@ static bool read_into(weft_block_reader *reader, size_t index)
     weft_block_samples *block = &reader->slot[index % SLOTS];
     block->place = reader->place[index];
     const weft_block_place *place = &block->place;
-    double began = weft_now_s();
     weft_error error = {0};
     weft_code code = weft_dataset_read_block(reader->dataset, place->x, place->y, place->width, place->height,
                                              block->samples, block->mask, &error);
     pthread_mutex_lock(&reader->mutex);
-    reader->times.reading += weft_now_s() - began;
-    reader->times.bytes +=
-        texel_bytes(weft_dataset_get_layout(reader->dataset)) * (uint64_t)place->width * (uint64_t)place->height;
     reader->code = code;
     reader->error = error;
     reader->filled += code == WEFT_OK;
@@ -116,7 +104,6 @@ weft_code weft_block_reader_next(weft_block_reader *reader, const weft_block_sam
 {
     if (reader->taken == reader->count)
         return weft_fail(error, WEFT_BAD_USAGE, "all %zu blocks have been read", reader->count);
-    double began = weft_now_s();
     pthread_mutex_lock(&reader->mutex);
     reader->released = reader->taken;
     pthread_cond_broadcast(&reader->changed);
@@ -127,17 +114,8 @@ weft_code weft_block_reader_next(weft_block_reader *reader, const weft_block_sam
         *block = &reader->slot[reader->taken++ % SLOTS];
     else if (error)
         *error = reader->error;
-    reader->times.starving += weft_now_s() - began;
     pthread_mutex_unlock(&reader->mutex);
     return code;
-}
-
-weft_block_reader_times weft_block_reader_get_times(weft_block_reader *reader)
-{
-    pthread_mutex_lock(&reader->mutex);
-    weft_block_reader_times times = reader->times;
-    pthread_mutex_unlock(&reader->mutex);
-    return times;
 }
 
 void weft_block_reader_free(weft_block_reader *reader)

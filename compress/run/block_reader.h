@@ -17,12 +17,6 @@ typedef struct weft_block_samples {
 
 typedef struct weft_block_reader weft_block_reader;
 
-typedef struct weft_block_reader_times {
-    uint64_t bytes;  /* of samples and masks */
-    double reading;  /* seconds by the wall that the reader spent reading */
-    double starving; /* seconds by the wall that the caller waited for it */
-} weft_block_reader_times;
-
 /* Bytes that a reader of blocks of so many texels allocates. Pure. */
 uint64_t weft_block_reader_bytes(const weft_dataset_layout *layout, size_t texels);
 
@@ -34,9 +28,6 @@ weft_code weft_block_reader_create(weft_dataset *dataset, const weft_block_place
 /* Gives back the block before, if any, and waits for the next one, which stays the reader's. Errors: those of
  * weft_dataset_read_block; WEFT_BAD_USAGE after the last block. */
 weft_code weft_block_reader_next(weft_block_reader *reader, const weft_block_samples **block, weft_error *error);
-
-/* So far. Call it between weft_block_reader_next and the end of the last block. */
-weft_block_reader_times weft_block_reader_get_times(weft_block_reader *reader);
 
 /* Ends the thread, at once if between blocks, and frees. NULL is fine. */
 void weft_block_reader_free(weft_block_reader *reader);

@@ -310,13 +310,11 @@ static weft_code fit_block(run *fit, size_t index, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code fit_blocks(run *fit, weft_dense_result *result, weft_error *error)
+static weft_code fit_blocks(run *fit, weft_error *error)
 {
     const weft_block_plan *plan = &fit->plan;
     size_t first;
     WEFT_TRY(resume(fit, &first, error));
-    result->block_count = plan->count;
-    result->resumed_block_count = first;
     long resumed = fit->fitted.counts.texels, total = all_texels(fit->fitted.material) - resumed;
     WEFT_TRY(weft_block_reader_create(fit->dataset, plan->place + first, plan->count - first,
                                       block_texels(fit->source->layout, plan->side_level), &fit->reader, error));
@@ -325,7 +323,6 @@ static weft_code fit_blocks(run *fit, weft_dense_result *result, weft_error *err
         WEFT_TRY(fit_block(fit, i, error));
         weft_progress_report(fit->job->progress, "fitting texels", fit->fitted.counts.texels - resumed, total);
     }
-    result->times = weft_block_reader_get_times(fit->reader);
     return WEFT_OK;
 }
 
@@ -337,7 +334,7 @@ weft_code weft_dense_fit(weft_dataset *dataset, const weft_texel_source *source,
     pthread_mutex_init(&fit.mutex, NULL);
     weft_code code = create_run(&fit, material, error);
     if (code == WEFT_OK)
-        code = fit_blocks(&fit, result, error);
+        code = fit_blocks(&fit, error);
     if (code == WEFT_OK) {
         weft_fitted_finish(&fit.fitted);
         result->counts = fit.fitted.counts;

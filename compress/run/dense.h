@@ -3,7 +3,6 @@
 #define WEFT_COMPRESS_RUN_DENSE_H
 
 #include "base/progress.h"
-#include "compress/run/block_reader.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
 #include "compress/texel/texel.h"
@@ -20,8 +19,6 @@ typedef struct weft_dense_job {
 typedef struct weft_dense_result {
     weft_texel_counts counts;
     long masked;
-    size_t block_count, resumed_block_count;
-    weft_block_reader_times times;
     weft_checkpoint *checkpoint; /* still open, for what follows to go on with; the caller closes it. NULL: none */
 } weft_dense_result;
 
