@@ -45,7 +45,7 @@ weft_module(btf/material
 weft_module(btf/session
     USES base base/text btf/direction)
 weft_module(reflectance
-    FOLDERS reflectance/bard reflectance/components reflectance/gaussian reflectance/lafortune reflectance/microcylinder reflectance/quadrature reflectance/relief reflectance/weave reflectance/woven
+    FOLDERS reflectance/bard reflectance/components reflectance/lafortune reflectance/microcylinder reflectance/quadrature reflectance/relief reflectance/weave reflectance/woven
     USES base base/text btf/direction btf/material)
 weft_module(geometry
     FOLDERS geometry/stitch geometry/yarn geometry/light geometry/acquisition geometry/drape

@@ -2,7 +2,7 @@
 # others. Only for tests and benches; never linked with the library itself.
 set(pure base/status base/atomic_file base/text/csv base/text/lexer base/text/block_parser base/text/text_file
     btf/direction/direction btf/direction/frame btf/direction/convex_hull btf/direction/triangulation)
-foreach(model quadrature lafortune bard gaussian microcylinder woven weave)
+foreach(model quadrature lafortune bard microcylinder woven weave)
     file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/reflectance/${model}/*.c)
     list(TRANSFORM sources REPLACE "\\.c$" "")
     list(APPEND pure ${sources})

@@ -20,29 +20,11 @@ static const numerics_claim claims[NUMERICS_MODELS] = {
     [NUMERICS_MIP] =
         {"Material: T, S, lobes, texels and levels", 2e-13, 0.0001, 0, 0, 10, 20, 4,
          "next to the horizon and to the edges of lobes; u and v are reduced to the tile before they lose digits"},
-    [NUMERICS_BARD_IN_PLANE] = {"BARD, turned in the plane", 1e-13, 0.0001, 0, 0.005, 200, 200, 1,
+    [NUMERICS_BARD_IN_PLANE] = {"BARD, turned in the plane", 1e-13, 0.0001, 0, 0, 200, 200, 1,
                                 "light near the horizon: the elevation is kept at 3 degrees, so that the gain ends at "
                                 "365. Next to the seam of the table"},
-    [NUMERICS_BARD_PRINTED] = {"BARD, as printed", 2e-13, 0.01, 0, 0.005, 200, 500, 1,
+    [NUMERICS_BARD_PRINTED] = {"BARD, as printed", 2e-13, 0.01, 0, 0, 200, 500, 1,
                                "light and view next to the normal, where the printed angles have no azimuth"},
-    [NUMERICS_SPHERICAL_GAUSSIAN] = {"Spherical Gaussian", 5e-12, 0.0005, 0, 0.0005, 5, 10, 1,
-                                     "far out on a narrow lobe: twice the exponent times the rounding of the distance. "
-                                     "Widths below 1e-9 count as 1e-9"},
-    [NUMERICS_CIRCULAR_GAUSSIAN] = {"Circular Gaussian", 5e-13, 0.0005, 0, 0.0002, 5, 5, 1,
-                                    "as the spherical one; x - mean is what is rounded"},
-    [NUMERICS_PRODUCT_SCALE] = {"Product of Gaussians, scale", 5e-12, 0.0005, 0, 0.0005, 5, 10, 1,
-                                "narrow lobes far apart; no exponent is subtracted from another"},
-    [NUMERICS_PRODUCT_WIDTH] =
-        {"Product of Gaussians, width", 1e-11, 0.0005, 0, 2e-05, 5, 5, 1,
-         "two lobes nearly opposite and equally wide, whose product is constant: an infinite width is meant there"},
-    [NUMERICS_SPLIT_WIDTH] = {"Split of a spherical Gaussian, width", 5e-15, 5e-06, 0, 5e-06, 5, 5, 1,
-                              "next to the axis, where the width grows without bound: infinite at the poles"},
-    [NUMERICS_GAUSSIAN_BOX] = {"Gaussian over the box", 5e-13, 0.0005, 0, 0, 20, 20, 1,
-                               "means far outside of the box: tails by erfc, never by a difference from 1"},
-    [NUMERICS_HALF_PLANE] = {"Share of a half-plane", 2e-09, 0.005, 0, 0, 0, 0, 150,
-                             "narrow lobes and a line that misses them: absolute digits, kept within 0 and 1"},
-    [NUMERICS_SIGMOID] = {"Sigmoid", 1e-12, 5e-05, 0, 0.0001, 5, 5, 1,
-                          "far out on the negative side: the exponent times its rounding; no overflow"},
     [NUMERICS_FRESNEL_REFLECTANCE] =
         {"Fresnel reflectance", 2e-12, 0.001, 0, 0.0002, 10, 20, 1,
          "eta next to 1, where c and the refracted cosine cancel: absolute digits. 1 for c = 0"},
@@ -112,11 +94,6 @@ double numerics_bound(const numerics_set *set, numerics_id id, numerics_objectiv
 #define WIDTHS 10, 1e-4
 const numerics_regime numerics_regimes[] = {
     {NUMERICS_LOBE_POWER, "N", {"N"}, 0.1, 1, 1e-3, 1e4},
-    {NUMERICS_SPHERICAL_GAUSSIAN, "width, rad", {"sigma"}, 1, 0, WIDTHS},
-    {NUMERICS_CIRCULAR_GAUSSIAN, "width, rad", {"width"}, 1, 0, WIDTHS},
-    {NUMERICS_PRODUCT_SCALE, "widths, rad", {"sigma1", "sigma2"}, 1, 0, WIDTHS},
-    {NUMERICS_GAUSSIAN_BOX, "widths, rad", {"sigma_l", "sigma_p"}, 1, 0, WIDTHS},
-    {NUMERICS_HALF_PLANE, "widths, rad", {"sigma_l", "sigma_p"}, 1, 0, WIDTHS},
     {NUMERICS_THREAD_SCATTERING, "gamma_s, gamma_v, rad", {"gamma_s", "gamma_v"}, 1, 0, 10, 1e-3},
     {NUMERICS_CLOTH_BY_AREA, "gamma_s, gamma_v, sigma, rad", {"gamma_s", "gamma_v", "sigma"}, 1, 0, 10, 1e-3},
     {NUMERICS_SPINE_RADIUS, "pi/2 - umax", {"umax"}, 0.6, 0.8, 0.1, 1e-7},

@@ -45,26 +45,6 @@ static const numerics_argument extrapolation[] = {{"v", NUMERICS_RING, 75, 90, 0
 static const numerics_argument mip[] = {
     {"level", NUMERICS_LINEAR, 0, 2, 0}, {"u", NUMERICS_LINEAR, -2, 2, 0}, {"v", NUMERICS_LINEAR, -2, 2, 0}, PAIR};
 static const numerics_argument bard[] = {{"rho_d", NUMERICS_LINEAR, 0, 1, 0}, PAIR};
-static const numerics_argument spherical[] = {{"w", NUMERICS_DIRECTION, 0, 0, 0},
-                                              {"xi", NUMERICS_TIED_DIRECTION, 0, 0, 0},
-                                              {"sigma", NUMERICS_LOGARITHMIC, 1e-4, 10, 0}};
-static const numerics_argument circular[] = {{"mean", NUMERICS_LINEAR, -3.14, 3.14, 0},
-                                             {"width", NUMERICS_LOGARITHMIC, 1e-4, 10, 0},
-                                             {"x", NUMERICS_NEAR, 1e-3, 10, 0}};
-static const numerics_argument product[] = {{"mu1", NUMERICS_LINEAR, -3.14, 3.14, 0},
-                                            {"sigma1", NUMERICS_LOGARITHMIC, 1e-4, 10, 0},
-                                            {"mu2", NUMERICS_NEAR, 1e-3, 10, 0},
-                                            {"sigma2", NUMERICS_LOGARITHMIC, 1e-4, 10, 0}};
-static const numerics_argument box[] = {{"theta_l", NUMERICS_LINEAR, -3.14, 3.14, 0},
-                                        {"phi_k", NUMERICS_LINEAR, -3.14, 3.14, 0},
-                                        {"sigma_l", NUMERICS_LOGARITHMIC, 1e-4, 10, 0},
-                                        {"sigma_p", NUMERICS_LOGARITHMIC, 1e-4, 10, 0}};
-static const numerics_argument half_plane[] = {{"sigma_l", NUMERICS_LOGARITHMIC, 1e-4, 10, 0},
-                                               {"sigma_p", NUMERICS_LOGARITHMIC, 1e-4, 10, 0},
-                                               {"d", NUMERICS_SIGNED, 1e-6, 1.6, 0},
-                                               {"gamma", NUMERICS_LINEAR, 0, 3.14, 0}};
-static const numerics_argument sigmoid[] = {{"gain", NUMERICS_LOGARITHMIC, 1e-3, 1e4, 0},
-                                            {"distance", NUMERICS_SIGNED, 1e-6, 1.6, 0}};
 static const numerics_argument fresnel[] = {{"c", NUMERICS_LOGARITHMIC, 1e-7, 1, 0},
                                             {"eta", NUMERICS_LINEAR, 1.001, 1.7, 0}};
 static const numerics_argument thread[] = {{"axis", NUMERICS_WHOLE, 0, 1, 0},
@@ -152,14 +132,6 @@ static const numerics_domain domains[NUMERICS_MODELS] = {
     [NUMERICS_MIP] = DOMAIN(NULL, mip),
     [NUMERICS_BARD_IN_PLANE] = DOMAIN("bard.csv", bard),
     [NUMERICS_BARD_PRINTED] = DOMAIN("bard.csv", bard),
-    [NUMERICS_SPHERICAL_GAUSSIAN] = DOMAIN("sg_split.csv", spherical),
-    [NUMERICS_CIRCULAR_GAUSSIAN] = DOMAIN(NULL, circular),
-    [NUMERICS_PRODUCT_SCALE] = DOMAIN("sg_product.csv", product),
-    [NUMERICS_PRODUCT_WIDTH] = DOMAIN("sg_product.csv", product),
-    [NUMERICS_SPLIT_WIDTH] = DOMAIN("sg_split.csv", spherical),
-    [NUMERICS_GAUSSIAN_BOX] = DOMAIN("sg_box.csv", box),
-    [NUMERICS_HALF_PLANE] = DOMAIN("sg_H.csv", half_plane),
-    [NUMERICS_SIGMOID] = DOMAIN(NULL, sigmoid),
     [NUMERICS_FRESNEL_REFLECTANCE] = DOMAIN(NULL, fresnel),
     [NUMERICS_FRESNEL_TRANSMITTANCE] = DOMAIN(NULL, fresnel),
     [NUMERICS_THREAD_SCATTERING] = DOMAIN("microcylinder_thread.csv", thread),

@@ -15,10 +15,7 @@
 /* A picture of SIDE x SIDE queries; the numbers of a query lie in BANDS pictures of four, one above the other. */
 enum { SIDE = 128, QUERIES = SIDE * SIDE, BANDS = 8, NUMBERS = 4 * BANDS };
 
-extern const char numerics_glsl_bard[], numerics_glsl_spherical_gaussian[];
-
-static const char unpack[] = "uniform sampler2D table;\n"
-                             "uniform sampler2D query;\n"
+static const char unpack[] = "uniform sampler2D query;\n"
                              "out vec4 colour;\n"
                              "void main()\n"
                              "{\n"
@@ -46,20 +43,6 @@ typedef struct twin {
 
 static const twin twins[NUMERICS_MODELS] = {
     [NUMERICS_LOBE_POWER] = {weft_glsl_lafortune, RETURN("lobe_power(q[0], q[1])")},
-    [NUMERICS_BARD_IN_PLANE] = {numerics_glsl_bard,
-                                RETURN("bard_brdf(false, q[0], table, " VECTOR(1, 2, 3) ", " VECTOR(4, 5, 6) ")")},
-    [NUMERICS_BARD_PRINTED] = {numerics_glsl_bard,
-                               RETURN("bard_brdf(true, q[0], table, " VECTOR(1, 2, 3) ", " VECTOR(4, 5, 6) ")")},
-    [NUMERICS_SPHERICAL_GAUSSIAN] = {numerics_glsl_spherical_gaussian,
-                                     RETURN("spherical_gaussian(" VECTOR(0, 1, 2) ", " VECTOR(3, 4, 5) ", q[6])")},
-    [NUMERICS_CIRCULAR_GAUSSIAN] = {numerics_glsl_spherical_gaussian, RETURN("circular_gaussian(q[2], q[0], q[1])")},
-    [NUMERICS_PRODUCT_SCALE] = {numerics_glsl_spherical_gaussian,
-                                RETURN("circular_product(q[0], q[1], q[2], q[3]).scale")},
-    [NUMERICS_PRODUCT_WIDTH] = {numerics_glsl_spherical_gaussian,
-                                RETURN("circular_product(q[0], q[1], q[2], q[3]).width")},
-    [NUMERICS_SPLIT_WIDTH] = {numerics_glsl_spherical_gaussian, RETURN("spherical_gaussian_split(" VECTOR(
-                                                                    0, 1, 2) ", " VECTOR(3, 4, 5) ", q[6]).phi_width")},
-    [NUMERICS_SIGMOID] = {numerics_glsl_spherical_gaussian, RETURN("gaussian_sigmoid(q[0], q[1])")},
     [NUMERICS_FRESNEL_REFLECTANCE] = {weft_glsl_microcylinder, RETURN("fresnel_reflectance(q[0], q[1])")},
     [NUMERICS_FRESNEL_TRANSMITTANCE] = {weft_glsl_microcylinder, RETURN("fresnel_transmittance(q[0], q[1])")},
     [NUMERICS_THREAD_SCATTERING] = {weft_glsl_microcylinder, THREAD RETURN("thread_scattering(optics, angles).r")},
@@ -73,22 +56,16 @@ static const twin twins[NUMERICS_MODELS] = {
 static const numerics_set shader_set = {.name = "GLSL", .roundoff = (double)(FLT_EPSILON / 2), .single = true};
 
 static weft_headless *headless;
-static GLuint table;
 
 weft_code numerics_glsl_open(weft_error *error)
 {
-    const weft_texture_format format = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
-    static float satin[NUMERICS_SATIN_THETAS * NUMERICS_SATIN_PHIS][4];
     WEFT_TRY(weft_headless_create(WEFT_GL_CORE, &headless, error));
     keep_modules_loaded();
-    for (int i = 0; i < NUMERICS_SATIN_THETAS * NUMERICS_SATIN_PHIS; i++)
-        satin[i][0] = (float)numerics_satin(i / NUMERICS_SATIN_PHIS, i % NUMERICS_SATIN_PHIS);
-    return weft_gl_texture(format, NUMERICS_SATIN_PHIS, NUMERICS_SATIN_THETAS, 0, satin, &table, error);
+    return WEFT_OK;
 }
 
 void numerics_glsl_close(void)
 {
-    glDeleteTextures(1, &table);
     weft_headless_free(headless);
 }
 
@@ -140,8 +117,7 @@ static weft_code draw(const stage *s, float (*query)[QUERIES][4], float (*result
     GLuint numbers;
     WEFT_TRY(weft_gl_texture(format, SIDE, BANDS * SIDE, 0, query, &numbers, error));
     glUseProgram(s->program);
-    weft_gl_bind(s->program, "table", 0, GL_TEXTURE_2D, table);
-    weft_gl_bind(s->program, "query", 1, GL_TEXTURE_2D, numbers);
+    weft_gl_bind(s->program, "query", 0, GL_TEXTURE_2D, numbers);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_FLOAT, result);
     glDeleteTextures(1, &numbers);

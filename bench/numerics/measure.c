@@ -91,18 +91,10 @@ static bool is_other_side(numerics_id id, const double *argument, int count, dou
     return false;
 }
 
-/* Widths of Gaussians are infinite where these are constant, and count as that above this. */
-static bool counts_as_infinite(numerics_id id, double value)
-{
-    return (id == NUMERICS_PRODUCT_WIDTH || id == NUMERICS_SPLIT_WIDTH) && value > 1e15;
-}
-
 numerics_error numerics_error_of_value(const numerics_set *set, numerics_id id, const double *argument, int count,
                                        numerics_value value, bool with_growth)
 {
     numerics_value expected = exact(id, argument);
-    if (counts_as_infinite(id, expected.high) && value.high > 1e14)
-        return (numerics_error){0};
     numerics_error error = {.broken = !isfinite(value.high) || value.high < 0};
     if (error.broken)
         return error;

@@ -27,12 +27,10 @@ static inline numerics_value plain_value(weft_real value)
     return scaled_value(value, 0);
 }
 
-/* The functions of models_tables.c, models_gaussian.c, models_microcylinder.c and models_woven.c. */
+/* The functions of models_tables.c, models_microcylinder.c and models_woven.c. */
 bool numerics_tables_begin(void);
 numerics_function numerics_lobe_power, numerics_lafortune, numerics_table_fit, numerics_interpolation, numerics_mip,
     numerics_bard_in_plane, numerics_bard_printed, numerics_as_it_is, numerics_normal_exactly;
-numerics_function numerics_spherical_gaussian, numerics_circular_gaussian, numerics_product_scale,
-    numerics_product_width, numerics_split_width, numerics_gaussian_box, numerics_half_plane, numerics_sigmoid;
 numerics_function numerics_fresnel_reflectance, numerics_fresnel_transmittance, numerics_thread_scattering,
     numerics_thread_shadowing, numerics_thread_projection, numerics_cloth_by_area, numerics_cloth_printed_brdf;
 numerics_function numerics_spine_radius, numerics_phase, numerics_point, numerics_texture, numerics_reflectance,

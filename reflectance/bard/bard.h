@@ -1,6 +1,6 @@
 /* Satin from one measurement under light along the normal (BARD: "basic anisotropic reflection distribution"; article
  * and corrections in docs/reference/models.md). A point (light, view) looks up the view that shows the same fibres when
- * the light stands on the normal, and scales what is seen there. Pure functions. GLSL twin: reflectance/bard/bard.glsl.
+ * the light stands on the normal, and scales what is seen there. Pure functions.
  */
 #ifndef WEFT_REFLECTANCE_BARD_BARD_H
 #define WEFT_REFLECTANCE_BARD_BARD_H

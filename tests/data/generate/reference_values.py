@@ -591,101 +591,6 @@ def microcylinder_cloth(row):
     return out
 
 
-# ---- Spherical Gaussians ----
-
-
-def gc(x, s):
-    return mp.exp(-4 / s**2 * mp.sin(x / 2) ** 2)
-
-
-def sg_product(row):
-    mu1, s1, mu2, s2 = (mp.mpf(row[k]) for k in ("mu1", "sigma1", "mu2", "sigma2"))
-    l1, l2 = 2 / s1**2, 2 / s2**2
-    x, y = l1 * mp.cos(mu1) + l2 * mp.cos(mu2), l1 * mp.sin(mu1) + l2 * mp.sin(mu2)
-    l = mp.sqrt(x * x + y * y)
-    return {"mu": mp.atan2(y, x), "sigma": mp.sqrt(2 / l), "scale": mp.exp(l - l1 - l2)}
-
-
-def sg_split(row):
-    w, xi, s = direction(row, "w"), direction(row, "xi"), mp.mpf(row["sigma"])
-    theta, theta_k = mp.asin(w[0]), mp.asin(xi[0])
-    return {"G": mp.exp(2 / s**2 * (dot(w, xi) - 1)), "theta_i": theta, "theta_k": theta_k,
-            "sigma_prime": s / mp.sqrt(mp.cos(theta) * mp.cos(theta_k))}
-
-
-def sg_box(row):
-    theta, phi, s, p = (mp.mpf(row[k]) for k in ("theta_l", "phi_k", "sigma_l", "sigma_p"))
-    value = pi * s * p / 4
-    for at, width in ((theta, s), (phi, p)):
-        value *= mp.erf((pi / 2 - at) / width) - mp.erf((-pi / 2 - at) / width)
-    return {"value": value}
-
-
-NODES = np.polynomial.legendre.leggauss(160)
-
-
-def half_plane(s, p, gamma, d):
-    """Double precision, to 1e-9: products of Gauss rules over six widths, the inner one up to the half plane."""
-
-    def gauss_curve(x, width):
-        return np.exp(-4 / width**2 * np.sin(x / 2) ** 2)
-
-    def inside(low, high, width):
-        # The curve below the reach of eight widths is under 1e-27 of its top.
-        low, high = np.clip(low, -min(8 * width, np.pi / 2), None), np.clip(high, None, min(8 * width, np.pi / 2))
-        half = np.maximum(high - low, 0) / 2
-        x = (low + high)[:, None] / 2 + half[:, None] * NODES[0]
-        return half * (gauss_curve(x, width) @ NODES[1])
-
-    c, e = np.cos(gamma), np.sin(gamma)
-    # The coordinate with the smaller share of the gradient is the outer one.
-    if abs(e) < abs(c):
-        c, e, s, p = e, c, p, s
-    reach = min(8 * s, np.pi / 2)
-    pieces = [-reach, reach]
-    for edge in (-1, 1):  # where the border of the half plane leaves the box
-        if abs(c) > 1e-14:
-            at = -(d + e * edge * min(8 * p, np.pi / 2)) / c
-            if -reach < at < reach:
-                pieces.append(at)
-    pieces.sort()
-    above = whole = 0.0
-    for low, high in zip(pieces, pieces[1:]):
-        x = (low + high) / 2 + (high - low) / 2 * NODES[0]
-        weight = (high - low) / 2 * NODES[1] * gauss_curve(x, s)
-        border = -(d + c * x) / e
-        all_of = inside(np.full_like(x, -np.pi / 2), np.full_like(x, np.pi / 2), p)
-        part = inside(border, np.full_like(x, np.pi / 2), p) if e > 0 else inside(
-            np.full_like(x, -np.pi / 2), border, p)
-        above += weight @ part
-        whole += weight @ all_of
-    return above / whole
-
-
-def sg_H(row):
-    return {"H": mp.mpf(half_plane(*(float(row[k]) for k in ("sigma_l", "sigma_p", "gamma", "d"))))}
-
-
-def sg_gain(row):
-    s, p, gamma = (float(row[k]) for k in ("sigma_l", "sigma_p", "gamma"))
-    d = np.linspace(-np.pi / 2, np.pi / 2, 65)
-    h = np.array([half_plane(s, p, gamma, x) for x in d])
-
-    def off(log_kappa):
-        z = np.clip(np.exp(log_kappa) * d, -700, 700)
-        return 1 / (1 + np.exp(-z)) - h
-
-    low, high, ratio = np.log(0.05), np.log(5000), (np.sqrt(5) - 1) / 2
-    for _ in range(80):
-        a, b = high - ratio * (high - low), low + ratio * (high - low)
-        if np.sum(off(a) ** 2) < np.sum(off(b) ** 2):
-            high = b
-        else:
-            low = a
-    best = (low + high) / 2
-    return {"kappa": mp.mpf(float(np.exp(best))), "max_abs_error": mp.mpf(float(np.max(np.abs(off(best)))))}
-
-
 # ---- Files ----
 
 # How far a remade value may lie from the printed one, relative, beside half a unit of the ninth digit; absolute.
@@ -695,8 +600,6 @@ MAKERS = {
     "woven_texture": (woven_texture, 0, 0), "woven_reflectance": (woven_reflectance, 1e-6, 0),
     "weave_eval": (weave_eval, 0, 1e-12), "weave_mean": (weave_mean, 1e-6, 0), "bard": (bard, 0, 1e-9),
     "microcylinder_thread": (microcylinder_thread, 0, 1e-12), "microcylinder_cloth": (microcylinder_cloth, 0, 0),
-    "sg_product": (sg_product, 0, 1e-300), "sg_split": (sg_split, 0, 1e-9), "sg_box": (sg_box, 0, 1e-9),
-    "sg_H": (sg_H, 0, 1e-6), "sg_gain": (sg_gain, 1e-3, 1e-6),
 }
 
 

@@ -1,6 +1,5 @@
 /* Microcylinder cloth under spherical-Gaussian light: the reference vectors of environment light and of table entries.
  * Built twice: in double, and in single precision. */
-#include "reflectance/gaussian/spherical_gaussian.h"
 #include "tests/reflectance/microcylinder/microcylinder_cloths.h"
 #include "tests/reflectance/microcylinder/tangent_quadrature.h"
 #include "tests/reflectance/vectors.h"
@@ -76,10 +75,16 @@ static double visible_share(const lit_tangent *lit, const weft_thread_angles *an
     return all > 0 ? weft_thread_shadowing(angles, lit->cloth->cloth.sigma) * own / all : 0;
 }
 
+static double spherical_gaussian(weft_vec3 direction, const gaussian_light *light)
+{
+    double distance = (double)(weft_length(weft_subtract(direction, light->centre)) / light->width);
+    return exp(-distance * distance);
+}
+
 static void add_table_entry(void *context, weft_vec3 direction, double solid_angle)
 {
     lit_tangent *lit = context;
-    double gaussian = weft_spherical_gaussian(direction, lit->light[0].centre, lit->light[0].width) * solid_angle;
+    double gaussian = spherical_gaussian(direction, &lit->light[0]) * solid_angle;
     if (gaussian < 1e-16)
         return;
     weft_thread_angles angles = weft_thread_angles_of(lit->tangent, direction, lit->view);
@@ -93,8 +98,7 @@ static void add_environment(void *context, weft_vec3 direction, double solid_ang
     double radiance[3] = {0};
     for (int k = 0; k < LIGHTS; k++)
         for (int c = 0; c < 3; c++)
-            radiance[c] += lit->light[k].radiance[c] *
-                           (double)weft_spherical_gaussian(direction, lit->light[k].centre, lit->light[k].width);
+            radiance[c] += lit->light[k].radiance[c] * spherical_gaussian(direction, &lit->light[k]);
     if (radiance[0] + radiance[1] + radiance[2] < 1e-12)
         return;
     weft_thread_angles angles = weft_thread_angles_of(lit->tangent, direction, lit->view);
