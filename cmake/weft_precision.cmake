@@ -7,7 +7,7 @@ foreach(model quadrature lafortune bard microcylinder woven weave)
     list(TRANSFORM sources REPLACE "\\.c$" "")
     list(APPEND pure ${sources})
 endforeach()
-list(FILTER pure EXCLUDE REGEX "_kernel$|weave/batch$|weave/scale_batch$")
+list(FILTER pure EXCLUDE REGEX "_kernel$|weave/batch$")
 list(TRANSFORM pure PREPEND ${CMAKE_SOURCE_DIR}/)
 list(TRANSFORM pure APPEND .c)
 

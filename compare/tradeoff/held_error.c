@@ -3,7 +3,7 @@
 #include "base/integers.h"
 #include "compare/tradeoff/cloth.h"
 #include "compare/tradeoff/held_pictures.h"
-#include "compress/bard/texels.h"
+#include "compress/bard/predict.h"
 #include "compress/compress.h"
 #include "compress/hold_out/certify.h"
 #include "compress/hold_out/hold_out.h"

@@ -8,7 +8,7 @@
 #include "compare/tradeoff/flicker.h"
 #include "compare/tradeoff/frame_timer.h"
 #include "compare/tradeoff/weight.h"
-#include "compress/bard/texels.h"
+#include "compress/bard/predict.h"
 #include "compress/compress.h"
 #include "compress/hold_out/excerpt.h"
 

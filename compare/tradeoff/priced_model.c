@@ -1,7 +1,7 @@
 #include "compare/tradeoff/priced_model.h"
 
 #include "btf/direction/direction.h"
-#include "compress/bard/texels.h"
+#include "compress/bard/predict.h"
 #include "compress/compress.h"
 #include "compress/hold_out/hold_out.h"
 

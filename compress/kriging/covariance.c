@@ -1,7 +1,6 @@
 #include "compress/kriging/covariance.h"
 
 #include "reflectance/components/components.h"
-#include "reflectance/components/half_vector.h"
 
 /* Powers of smaller cosines than that of 84 degrees are those of that one: directions nearer to the horizon are rarely
  * photographed, and tell nothing of how highlights go on. */

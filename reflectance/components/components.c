@@ -2,7 +2,6 @@
 
 #include "btf/direction/square_map.h"
 #include "btf/material/neighbours.h"
-#include "reflectance/components/half_vector.h"
 
 #include <string.h>
 

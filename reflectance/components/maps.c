@@ -1,7 +1,6 @@
 /* From values at images to square maps: over the lights of each view, then over the views. */
 #include "btf/direction/smooth_map.h"
 #include "reflectance/components/components.h"
-#include "reflectance/components/half_vector.h"
 
 #include <stdlib.h>
 #include <string.h>
