@@ -3,7 +3,6 @@
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "cli/command/arguments.h"
-#include "cli/compress_held_out.h"
 #include "cli/compress_report.h"
 #include "compare/tradeoff/component_count.h"
 #include "compress/hold_out/hold_out.h"
@@ -12,6 +11,12 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+/* Of held-out splits: as many as the dataset asks for. */
+enum { ENOUGH_SPLITS = -1 };
+
+/* Components that leave more have missed what the material is; lobes are suggested that leave at most this share. */
+static const double components_fail = 0.5, clearly_less = 0.75;
 
 typedef struct compress_command {
     weft_common_options common;
@@ -22,7 +27,7 @@ typedef struct compress_command {
     weft_preset preset;
     double least_fps; /* 0: any */
     weft_sample_weights weights;
-    int hold_out; /* splits; 0: off */
+    int hold_out; /* splits, or ENOUGH_SPLITS; 0: off */
     uint64_t memory_bytes;
 } compress_command;
 
@@ -164,7 +169,6 @@ typedef struct run_state {
     const compress_command *command;
     weft_progress progress;
     char scratch_path[PATH_MAX], partial_path[PATH_MAX];
-    weft_held_out_job job;
     weft_dataset *dataset;
     weft_compress_options options;
     weft_hold_out held_out;
@@ -187,12 +191,20 @@ static weft_code choose_by_preset(run_state *state, weft_error *error)
     return weft_report_prediction(&command->common, &state->prediction, error);
 }
 
+static weft_code count_splits(const run_state *state, int *count, weft_error *error)
+{
+    *count = state->command->hold_out;
+    if (*count != ENOUGH_SPLITS)
+        return WEFT_OK;
+    return weft_hold_out_enough_splits(weft_dataset_get_layout(state->dataset), count, error);
+}
+
 /* What is measured for the choice is the error of the material, too. */
 static weft_code choose_by_error(run_state *state, weft_error *error)
 {
     weft_component_count chosen;
     int splits;
-    WEFT_TRY(weft_held_out_splits(&state->job, state->dataset, &splits, error));
+    WEFT_TRY(count_splits(state, &splits, error));
     WEFT_TRY(weft_components_for_error(state->dataset, &state->options, state->command->wished_error, splits,
                                        state->scratch_path, &state->progress, &chosen, error));
     state->options.component_count = chosen.count;
@@ -226,16 +238,64 @@ static weft_code choose(run_state *state, weft_error *error)
 
 /* ---- The work ---- */
 
+static weft_code measure_model(run_state *state, const weft_compress_options *options, weft_hold_out *result,
+                               weft_error *error)
+{
+    int splits;
+    WEFT_TRY(count_splits(state, &splits, error));
+    return weft_hold_out_measure(state->dataset, options, splits, state->scratch_path, &state->progress, result, error);
+}
+
+/* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
+ * told, and there are no splits: what concerns the whole, too, its fit will say. */
+static weft_code measure_held_out(run_state *state, weft_error *error)
+{
+    weft_error own = {0};
+    if (state->command->hold_out == 0)
+        return WEFT_OK;
+    weft_code code = measure_model(state, &state->options, &state->held_out, &own);
+    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
+        weft_command_say(&state->command->common, "error on directions that were not fitted: not measured: %s",
+                         own.message);
+        state->held_out = (weft_hold_out){0};
+        return WEFT_OK;
+    }
+    if (code != WEFT_OK)
+        *error = own;
+    return code;
+}
+
+/* Components of which more than half is wrong where they were not fitted, as of a cloth that shines back in a beam
+ * narrower than the photographs are apart: then one lobe is measured, too, and the user is told where it leaves clearly
+ * less. Where that fails nothing is said. */
+static void suggest_lobes(run_state *state)
+{
+    weft_compress_options one_lobe = state->options;
+    weft_hold_out of_lobe = {0};
+    weft_error ignored = {0};
+    double components_error = state->held_out.material.all.relative_rmse;
+    one_lobe.component_count = 0;
+    one_lobe.lobe_count = 1;
+    if (state->held_out.split_count == 0 || !(components_error > components_fail) ||
+        measure_model(state, &one_lobe, &of_lobe, &ignored) != WEFT_OK)
+        return;
+    double lobe_error = of_lobe.material.all.relative_rmse;
+    if (lobe_error < clearly_less * components_error)
+        weft_command_say(&state->command->common,
+                         "components leave %.1f %% %s, one lobe %.1f %%: try --lobes 1, 2 or 3, or --preset best",
+                         100 * components_error, weft_hold_out_about(&state->held_out), 100 * lobe_error);
+}
+
 static weft_code measure(run_state *state, weft_error *error)
 {
     const compress_command *command = state->command;
     bool by_default = command->components == 0 && command->lobes == 0 && !has_preset(command);
     if (state->held_out.split_count == 0)
-        WEFT_TRY(weft_measure_held_out(&state->job, state->dataset, &state->options, &state->held_out, error));
+        WEFT_TRY(measure_held_out(state, error));
     if (state->held_out.heights.asked)
         state->options.heights = state->held_out.heights.used;
     if (by_default && state->options.component_count > 0)
-        weft_suggest_lobes(&state->job, state->dataset, &state->options, &state->held_out);
+        suggest_lobes(state);
     return WEFT_OK;
 }
 
@@ -319,13 +379,12 @@ static weft_code check_output(const char *path, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    compress_command command = {.hold_out = WEFT_ENOUGH_SPLITS};
+    compress_command command = {.hold_out = ENOUGH_SPLITS};
     weft_error error = {0};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     run_state state = {.command = &command, .progress = weft_command_progress(&command.common)};
     snprintf(state.scratch_path, sizeof state.scratch_path, "%s.held-out.btf.h5", command.output);
     snprintf(state.partial_path, sizeof state.partial_path, "%s.partial", command.output);
-    state.job = (weft_held_out_job){&command.common, state.scratch_path, command.hold_out, &state.progress};
     weft_code code = check_output(command.output, &error);
     if (code == WEFT_OK)
         code = compress_dataset(&state, &error);
