@@ -33,7 +33,7 @@ static void a_dataset_becomes_a_material_with_a_table_of_errors(void **state)
 {
     (void)state;
     char said[8192];
-    assert_int_equal(run_weft("", "compress command.btf.h5 -o command.weft --lobes 1", said), 0);
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o command.weft --lobes 1 --hold-out off", said), 0);
     assert_non_null(strstr(said, "median rel."));
     assert_non_null(strstr(said, "3 x 2"));
     assert_non_null(strstr(said, "fitted in"));
@@ -52,12 +52,12 @@ static void the_error_where_it_was_not_fitted_is_said_and_kept(void **state)
     (void)state;
     weft_material material;
     char said[8192];
-    expect_weft("compress command.btf.h5 -o held.weft --lobes 2", 0,
+    expect_weft("compress command.btf.h5 -o held.weft --lobes 1", 0,
                 "on directions that were not fitted: relative RMSE ");
     assert_int_equal(weft_material_read("held.weft", &material, NULL), WEFT_OK);
     assert_non_null(strstr(material.metadata, "\"held_out\":{"));
     weft_material_free(&material);
-    assert_int_equal(run_weft("", "compress command.btf.h5 -o held.weft --lobes 2 --hold-out 2 --json", said), 0);
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o held.weft --lobes 1 --hold-out 2 --json", said), 0);
     assert_non_null(strstr(said, "{\"event\":\"held_out\""));
     assert_non_null(strstr(said, "\"splits\":2"));
     assert_int_equal(run_weft("", "info held.weft", said), 0);
@@ -70,10 +70,10 @@ static void the_fit_itself_has_all_images_with_or_without(void **state)
 {
     (void)state;
     weft_material with, without;
-    expect_weft("compress command.btf.h5 -o with.weft --lobes 2 --hold-out 1", 0, "not fitted");
+    expect_weft("compress command.btf.h5 -o with.weft --lobes 1 --hold-out 1", 0, "not fitted");
     assert_int_equal(weft_material_read("with.weft", &with, NULL), WEFT_OK);
     char said[8192];
-    assert_int_equal(run_weft("", "compress command.btf.h5 -o without.weft --lobes 2 --hold-out off", said), 0);
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o without.weft --lobes 1 --hold-out off", said), 0);
     assert_null(strstr(said, "not fitted"));
     assert_int_equal(weft_material_read("without.weft", &without, NULL), WEFT_OK);
     assert_null(strstr(without.metadata, "held_out"));
@@ -89,8 +89,8 @@ static void weights_are_kept_with_the_material(void **state)
 {
     (void)state;
     weft_material even, screen;
-    expect_weft("compress command.btf.h5 -o even.weft --lobes 2 --weights even", 0, "fitted in");
-    expect_weft("compress command.btf.h5 -o screen.weft --lobes 2 --weights screen", 0, "fitted in");
+    expect_weft("compress command.btf.h5 -o even.weft --lobes 1 --weights even --hold-out off", 0, "fitted in");
+    expect_weft("compress command.btf.h5 -o screen.weft --lobes 1 --weights screen --hold-out off", 0, "fitted in");
     assert_int_equal(weft_material_read("even.weft", &even, NULL), WEFT_OK);
     assert_int_equal(weft_material_read("screen.weft", &screen, NULL), WEFT_OK);
     assert_null(strstr(even.metadata, "\"weights\""));
@@ -211,8 +211,9 @@ static void what_the_images_do_not_suffice_for_is_named(void **state)
     (void)state;
     char said[RUN_WEFT_SAID];
     write_few_images(1, 81);
-    expect_weft("compress few.btf.h5 -o few.weft --lobes 2", 0, "no view table");
-    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --lobes 2 --weights screen", said), 0);
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --hold-out off", 0, "no view table");
+    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --lobes 2 --weights screen --hold-out off", said),
+                     0);
     assert_null(strstr(said, "changes nothing"));
     write_few_images(1, 12);
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --weights screen", 0, "--weights changes nothing");
@@ -296,7 +297,9 @@ static void a_full_disk_is_3_and_leaves_nothing(void **state)
     (void)state;
     char said[8192];
     unlink("full.weft");
-    assert_int_equal(run_weft("ulimit -f 1; trap '' XFSZ;", "compress command.btf.h5 -o full.weft --lobes 2", said), 3);
+    assert_int_equal(
+        run_weft("ulimit -f 1; trap '' XFSZ;", "compress command.btf.h5 -o full.weft --lobes 1 --hold-out off", said),
+        3);
     assert_int_not_equal(access("full.weft", F_OK), 0);
     expect_weft("compress command.btf.h5 -o nowhere/full.weft --lobes 2", 3, "nowhere");
 }
