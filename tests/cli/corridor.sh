@@ -35,9 +35,9 @@ for model in cloth.weft cloth.btf.h5 "$assets/weaves/wool_gabardine.wv"; do
     [ "$(wc -l <out.log)" = 2 ] || fail "eval $model did not print one row"
 done
 
-expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gabardine.wv" --mode split --size 300x120 -o picture.png
+expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gabardine.wv" --mode split --environment none --samples 1 --size 300x120 -o picture.png
 grep -q "^from raw: compressed [0-9.]* % .*, analytic [0-9.]* %" out.log || fail "render does not say how far the models are from the data"
-expect_ok render cloth.weft --mesh sphere --size 64x64 -o sphere.exr
+expect_ok render cloth.weft --mesh sphere --samples 1 --size 64x64 -o sphere.exr
 expect_ok compare cloth.btf.h5 cloth.weft --weave "$assets/weaves/wool_gabardine.wv" --size 100 -o report
 expect_page report
 grep -q "<img" report/index.html || fail "the comparison has no pictures"
@@ -70,10 +70,10 @@ grep -q "Fitted to the mean of 32 images" fitted.wv || fail "the fitted weave do
 error_of_analytic() {
     sed -n "s/^analytic, mean BRDF: relative RMSE \([0-9.]*\) %,.*/\1/p" out.log
 }
-expect_says "fitted to no dataset" compare cloth.btf.h5 cloth.weft --weave start.wv --size 100 -o report
+expect_says "fitted to no dataset" compare cloth.btf.h5 cloth.weft --weave start.wv --size 64 -o report
 before=$(error_of_analytic)
 # The comparison fits by itself, to the same weave, and says so.
-expect_says "fitted to this dataset, the mean of 32 images" compare cloth.btf.h5 cloth.weft --weave start.wv --fit --size 100 -o report
+expect_says "fitted to this dataset, the mean of 32 images" compare cloth.btf.h5 cloth.weft --weave start.wv --fit --size 64 -o report
 # That of the whole material counts the texels beside the frame, too: the true weave has 0.87 of the error of the start.
 awk "BEGIN { exit !($(error_of_analytic) < 0.9 * $before) }" || fail "the fitted weave compares no better than its start"
 cmp fitted.wv report/fitted.wv || fail "compare --fit and fit-weave find different weaves"
