@@ -129,13 +129,13 @@ static weft_code hand_over(run *r, working_camera *c, const weft_exposing *e, we
     double white = weft_meter_white(&c->shooting.meter, c->session, e->samples);
     counts.taken++;
     counts.taken_now++;
-    weft_error told = {0};
-    weft_code noted = weft_status_page_note(c->status, e->shot, &e->record, white, e->samples, &counts, &told);
+    weft_error page_error = {0};
+    weft_code noted = weft_status_page_note(c->status, e->shot, &e->record, white, e->samples, &counts, &page_error);
     WEFT_TRY(weft_photograph_writer_submit(c->writer, e->shot, &e->record, error));
     r->capture->summary.bracketed += e->record.bracket_count;
     c->taken++;
     c->failures = 0;
-    return first_of(WEFT_OK, noted, &told, error);
+    return first_of(WEFT_OK, noted, &page_error, error);
 }
 
 /* ---- One synchronised shot ---- */
@@ -213,7 +213,7 @@ static int count_viewpoints(const run *r)
 }
 
 /* On the page of all cameras, when one of them has moved on. */
-static weft_code tell(run *r, weft_error *error)
+static weft_code update_overview(run *r, weft_error *error)
 {
     int viewpoints = count_viewpoints(r);
     if (viewpoints == r->viewpoints_shown)
@@ -235,7 +235,7 @@ static weft_code take_shot(run *r, const weft_synchronised_shot *shot, weft_erro
         else
             WEFT_TRY(hand_over(r, aimed[i], &exposing[i], error));
     }
-    return tell(r, error);
+    return update_overview(r, error);
 }
 
 /* ---- All of them ---- */
@@ -349,19 +349,19 @@ static weft_code end_all(run *r, weft_code code, weft_error *error)
 {
     const char *failure = code != WEFT_OK ? error->message : NULL;
     weft_error last = {0}, one = {0};
-    weft_code told = WEFT_OK;
+    weft_code reported = WEFT_OK;
     bool is_complete = true;
     for (int i = 0; i < r->camera_count; i++) {
         working_camera *c = &r->camera[i];
         const char *why = why_early(c, failure);
         is_complete = is_complete && !why;
-        told = first_of(told, end_camera(r, c, why, &one), &one, &last);
+        reported = first_of(reported, end_camera(r, c, why, &one), &one, &last);
     }
     const char *why = failure || is_complete ? failure : stopped;
-    told = first_of(told, write_overview(r, why, &one), &one, &last);
+    reported = first_of(reported, write_overview(r, why, &one), &one, &last);
     for (int i = 0; i < r->camera_count; i++)
         weft_shooting_end(&r->camera[i].shooting);
-    return first_of(code, told, &last, error);
+    return first_of(code, reported, &last, error);
 }
 
 static weft_code take_in_order(run *r, const weft_shot_order *order, weft_error *error)

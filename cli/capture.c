@@ -93,13 +93,13 @@ static void listen_for_stop(void)
 
 /* ---- Running ---- */
 
-static void say_warning(const weft_common_options *common, const char *warning)
+static void report_warning(const weft_common_options *common, const char *warning)
 {
     if (warning[0])
         weft_command_say(common, "%s", warning);
 }
 
-static void say_camera(const capture_command *command, const weft_rig *rig)
+static void report_camera(const capture_command *command, const weft_rig *rig)
 {
     if (rig->camera_name)
         weft_command_say(&command->common, "camera '%s':", rig->camera_name);
@@ -109,13 +109,13 @@ static weft_code rehearse(const capture_command *command, weft_rig *rig, const c
 {
     for (weft_rig *one = rig; one; one = one->next) {
         weft_capture_rehearsal rehearsal;
-        say_camera(command, one);
+        report_camera(command, one);
         WEFT_TRY(weft_capture_rehearse(&command->request, one, &rehearsal, error));
-        say_warning(&command->common, warning);
-        weft_say_rehearsal(&command->common, &rehearsal, one->stage.order != NULL);
+        report_warning(&command->common, warning);
+        weft_report_rehearsal(&command->common, &rehearsal, one->stage.order != NULL);
         weft_capture_rehearsal_free(&rehearsal);
     }
-    return rig->next ? weft_say_synchronised_shots(&command->common, &command->request, rig, error) : WEFT_OK;
+    return rig->next ? weft_report_synchronised_shots(&command->common, &command->request, rig, error) : WEFT_OK;
 }
 
 /* ---- Checks before a run ---- */
@@ -127,7 +127,7 @@ static weft_code judge(const capture_command *command, const char *camera, const
     snprintf(ending, sizeof ending, "%s%s.check.png", camera ? "." : "", camera ? camera : "");
     weft_beside_folder(command->request.folder, ending, path);
     WEFT_TRY(weft_image_write(path, &result->sheet, NULL, error));
-    WEFT_TRY(weft_say_checks(&command->common, result, error));
+    WEFT_TRY(weft_report_checks(&command->common, result, error));
     weft_command_say(&command->common,
                      "%s shows %d views: with the lamp, the change until the next photograph times 8, "
                      "without the lamp times 100",
@@ -145,7 +145,7 @@ static weft_code check_all(const capture_command *command, weft_rig *rig, weft_e
     weft_code result = WEFT_OK;
     for (weft_rig *one = rig; one; one = one->next) {
         weft_preflight found;
-        say_camera(command, one);
+        report_camera(command, one);
         weft_code code = weft_preflight_run(&command->request, one, &progress, &found, error);
         if (code == WEFT_OK) {
             code = judge(command, one->camera_name, &found, error);
@@ -160,7 +160,7 @@ static weft_code check_all(const capture_command *command, weft_rig *rig, weft_e
 
 /* ---- The run ---- */
 
-static void say_summary(const capture_command *command, const weft_capture_summary *summary)
+static void report_summary(const capture_command *command, const weft_capture_summary *summary)
 {
     const weft_common_options *common = &command->common;
     if (summary->found > 0)
@@ -231,8 +231,8 @@ static weft_code take_session(const capture_command *command, weft_rig *rig, con
     weft_code code = photograph(command, virtual, &capture, &progress, error);
     weft_capture_end(&capture);
     if (code == WEFT_OK) {
-        say_warning(&command->common, virtual ? virtual->warning : "");
-        say_summary(command, &capture.summary);
+        report_warning(&command->common, virtual ? virtual->warning : "");
+        report_summary(command, &capture.summary);
     }
     return code;
 }

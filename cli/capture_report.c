@@ -9,7 +9,7 @@
 
 /* ---- What would be done ---- */
 
-static void say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
+static void report_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
 {
     weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
                      rehearsal->shot_count, rehearsal->view_count);
@@ -20,7 +20,7 @@ static void say_rehearsal(const weft_common_options *common, const weft_capture_
 }
 
 /* The views in the order in which the stage takes them. */
-static void say_order(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
+static void report_order(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
 {
     const weft_shot *shot = rehearsal->session.shot;
     for (int i = 0, next; i < rehearsal->shot_count; i = next) {
@@ -35,7 +35,7 @@ static void say_order(const weft_common_options *common, const weft_capture_rehe
     }
 }
 
-static void say_stage(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
+static void report_stage(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
 {
     const weft_stage_estimate *stage = &rehearsal->stage;
     double photographs_s = rehearsal->seconds_per_photograph * rehearsal->shot_count;
@@ -46,11 +46,11 @@ static void say_stage(const weft_common_options *common, const weft_capture_rehe
                      stage->moves, photographs_s / 3600, rehearsal->seconds_per_photograph);
 }
 
-void weft_say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order)
+void weft_report_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order)
 {
     if (in_order)
-        say_order(common, rehearsal);
-    (in_order ? say_stage : say_rehearsal)(common, rehearsal);
+        report_order(common, rehearsal);
+    (in_order ? report_stage : report_rehearsal)(common, rehearsal);
     if (weft_session_frame_count(&rehearsal->session) > 0)
         weft_command_say(common, "before them %d + %d dark and %d flat frames of the sensor",
                          rehearsal->session.dark_frames, rehearsal->session.dark_frames,
@@ -61,45 +61,45 @@ void weft_say_rehearsal(const weft_common_options *common, const weft_capture_re
 
 static json_t *pack_check(const weft_preflight *result, int kind)
 {
-    const weft_preflight_meaning *meaning = &weft_preflight_meaning_of[kind];
+    const weft_preflight_limits *limits = &weft_preflight_limits_of[kind];
     const weft_preflight_check *check = &result->check[kind];
-    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : meaning->limit;
-    json_t *packed = json_pack("{s:s, s:b, s:f, s:f, s:s}", "check", meaning->name, "passed", check->passed, "value",
-                               check->value * meaning->scale, "limit", limit * meaning->scale, "unit", meaning->unit);
-    if (meaning->of_view)
+    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : limits->limit;
+    json_t *packed = json_pack("{s:s, s:b, s:f, s:f, s:s}", "check", limits->name, "passed", check->passed, "value",
+                               check->value * limits->scale, "limit", limit * limits->scale, "unit", limits->unit);
+    if (limits->of_view)
         weft_json_put(&packed, "view",
                       json_pack("[ff]", weft_deg_of_rad(check->view.theta_rad), weft_deg_of_rad(check->view.phi_rad)));
     if (!check->passed)
-        weft_json_put(&packed, "advice", json_string(meaning->advice));
+        weft_json_put(&packed, "advice", json_string(limits->advice));
     return packed;
 }
 
-static void say_check(const weft_common_options *common, const weft_preflight *result, int kind)
+static void report_check(const weft_common_options *common, const weft_preflight *result, int kind)
 {
-    const weft_preflight_meaning *meaning = &weft_preflight_meaning_of[kind];
+    const weft_preflight_limits *limits = &weft_preflight_limits_of[kind];
     const weft_preflight_check *check = &result->check[kind];
-    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : meaning->limit;
+    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : limits->limit;
     char view[64] = "";
     if (!check->done) {
-        weft_command_say(common, "%-4s %-15s not known", "-", meaning->name);
+        weft_command_say(common, "%-4s %-15s not known", "-", limits->name);
         return;
     }
-    if (meaning->of_view)
+    if (limits->of_view)
         snprintf(view, sizeof view, ", seen from %.0f %.0f degrees", weft_deg_of_rad(check->view.theta_rad),
                  weft_deg_of_rad(check->view.phi_rad));
-    weft_command_say(common, "%-4s %-15s %.3g %s (%s %.3g)%s", check->passed ? "pass" : "FAIL", meaning->name,
-                     check->value * meaning->scale, meaning->unit, meaning->is_least ? "at least" : "at most",
-                     limit * meaning->scale, view);
+    weft_command_say(common, "%-4s %-15s %.3g %s (%s %.3g)%s", check->passed ? "pass" : "FAIL", limits->name,
+                     check->value * limits->scale, limits->unit, limits->is_least ? "at least" : "at most",
+                     limit * limits->scale, view);
     if (!check->passed)
-        weft_command_say(common, "     %s", meaning->advice);
+        weft_command_say(common, "     %s", limits->advice);
 }
 
-weft_code weft_say_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error)
+weft_code weft_report_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error)
 {
     weft_code code = WEFT_OK;
     for (int kind = 0; kind < WEFT_CHECK_KINDS && code == WEFT_OK; kind++) {
         if (!common->json) {
-            say_check(common, result, kind);
+            report_check(common, result, kind);
         } else if (result->check[kind].done) {
             json_t *packed = pack_check(result, kind);
             code = weft_command_describe(common, "check", packed, error);
@@ -123,8 +123,8 @@ static weft_code order_shots(const weft_capture_request *request, const weft_rig
     return weft_shot_order_make(rig, all, count, order, error);
 }
 
-weft_code weft_say_synchronised_shots(const weft_common_options *common, const weft_capture_request *request,
-                                      const weft_rig *rig, weft_error *error)
+weft_code weft_report_synchronised_shots(const weft_common_options *common, const weft_capture_request *request,
+                                         const weft_rig *rig, weft_error *error)
 {
     weft_session sessions[WEFT_CAMERAS_MAX] = {0};
     weft_shot_order order = {0};

@@ -7,13 +7,13 @@
 #include "cli/command/arguments.h"
 
 /* `in_order`: the stage chose an order, and knows how long it takes. */
-void weft_say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order);
+void weft_report_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order);
 
 /* What several cameras would take together. Errors: those of the plan. */
-weft_code weft_say_synchronised_shots(const weft_common_options *common, const weft_capture_request *request,
-                                      const weft_rig *rig, weft_error *error);
+weft_code weft_report_synchronised_shots(const weft_common_options *common, const weft_capture_request *request,
+                                         const weft_rig *rig, weft_error *error);
 
 /* A line for each check, or an event. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_say_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error);
+weft_code weft_report_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error);
 
 #endif

@@ -52,7 +52,7 @@ static weft_code check(void *values, weft_error *error)
     return weft_target_sheet_check(&command->sheet, error);
 }
 
-static void say_page(const target_command *command)
+static void report_page(const target_command *command)
 {
     const weft_common_options *common = &command->common;
     if (command->board)
@@ -74,7 +74,7 @@ static int run(int argc, char **argv)
         code = command.board ? weft_lens_board_print(&command.lens_board, command.output, &error)
                              : weft_target_sheet_print(&command.sheet, command.output, &error);
     if (code == WEFT_OK)
-        say_page(&command);
+        report_page(&command);
     return weft_command_exit("target", &command.common, code, &error);
 }
 

@@ -29,7 +29,7 @@ typedef struct weft_axis {
     double low_deg, high_deg; /* where it may stand */
     double zero_deg;          /* where it stands when the angle is 0 */
     bool reversed;            /* the angle falls as the position grows */
-    bool by_hand;             /* a person turns it */
+    bool by_hand;             /* an operator turns it */
     double speed_deg_s, acceleration_deg_s2, settle_s;
     double backlash_deg; /* a position is taken up from below, from this far at least; 0: from either side */
     bool approach_down;  /* from above instead */

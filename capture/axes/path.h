@@ -11,7 +11,7 @@ typedef struct weft_axes_path {
 } weft_axes_path;
 
 /* Sorts `number` [count], which index `pose`. The poses of one viewpoint of the camera follow each other, since they
- * share what registration finds of it; where a person turns the light, those of one place of the light do.
+ * share what registration finds of it; where an operator turns the light, those of one place of the light do.
  * Deterministic; the time grows with the square of the poses of a viewpoint and of the viewpoints. Errors: WEFT_SYSTEM
  * for memory.
  *

@@ -242,7 +242,7 @@ static weft_code drive(weft_stage *stage, const weft_axis_positions *to, weft_er
     return code;
 }
 
-/* ---- Whom a person serves ---- */
+/* ---- Axes that an operator turns ---- */
 
 static weft_code turn_by_hand(weft_stage *stage, const weft_axis_positions *to, weft_error *error)
 {

@@ -1,4 +1,5 @@
-/* A stage of a laboratory behind the rig's interface: axes that a driver turns, axes that a person turns, and lamps. */
+/* A stage of a laboratory behind the rig's interface: axes that a driver turns, axes that an operator turns, and lamps.
+ */
 #ifndef WEFT_CAPTURE_MOTION_STAGE_H
 #define WEFT_CAPTURE_MOTION_STAGE_H
 

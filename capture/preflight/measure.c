@@ -13,7 +13,7 @@ static const weft_pose_limits pose_limits = {.tolerance_mm = 20, .least_correlat
 void weft_preflight_note(weft_preflight_check *check, weft_preflight_kind kind, double value, double limit,
                          weft_angles view)
 {
-    bool is_least = weft_preflight_meaning_of[kind].is_least;
+    bool is_least = weft_preflight_limits_of[kind].is_least;
     weft_preflight_check *c = &check[kind];
     if (c->done && (is_least ? value >= c->value : value <= c->value))
         return;
@@ -22,7 +22,7 @@ void weft_preflight_note(weft_preflight_check *check, weft_preflight_kind kind, 
 
 static void note(weft_preflight_check *check, weft_preflight_kind kind, double value, weft_angles view)
 {
-    weft_preflight_note(check, kind, value, weft_preflight_meaning_of[kind].limit, view);
+    weft_preflight_note(check, kind, value, weft_preflight_limits_of[kind].limit, view);
 }
 
 /* ---- Values ---- */

@@ -55,7 +55,7 @@ static void check_calibration(const char *lens, weft_preflight *result)
         return;
     double days = difftime(time(NULL), status.st_mtime) / day_s;
     weft_preflight_note(result->check, WEFT_CHECK_CALIBRATION, days,
-                        weft_preflight_meaning_of[WEFT_CHECK_CALIBRATION].limit, (weft_angles){0});
+                        weft_preflight_limits_of[WEFT_CHECK_CALIBRATION].limit, (weft_angles){0});
 }
 
 /* ---- Photographs ---- */

@@ -33,16 +33,16 @@ typedef struct weft_preflight_check {
 } weft_preflight_check;
 
 /* What is known of each check. */
-typedef struct weft_preflight_meaning {
+typedef struct weft_preflight_limits {
     const char *name, *unit;
     double limit;
     bool is_least; /* whether the value must reach the limit, not stay below it */
     double scale;  /* of the value, for people */
     bool of_view;
     const char *advice;
-} weft_preflight_meaning;
+} weft_preflight_limits;
 
-extern const weft_preflight_meaning weft_preflight_meaning_of[WEFT_CHECK_KINDS];
+extern const weft_preflight_limits weft_preflight_limits_of[WEFT_CHECK_KINDS];
 
 typedef struct weft_preflight {
     weft_preflight_check check[WEFT_CHECK_KINDS];

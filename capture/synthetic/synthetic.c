@@ -147,8 +147,8 @@ static weft_code take_all(const weft_synthetic_request *request, const weft_synt
     return WEFT_OK;
 }
 
-static weft_code take_and_tell(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
-                               const weft_virtual_sample *content, const weft_progress *progress, weft_error *error)
+static weft_code take_and_record(const weft_synthetic_request *request, const weft_synthetic_shot *shot,
+                                 const weft_virtual_sample *content, const weft_progress *progress, weft_error *error)
 {
     WEFT_TRY(make_empty_folder(request->folder, error));
     WEFT_TRY(weft_synthetic_truth_write(request, shot, error));
@@ -180,7 +180,7 @@ weft_code weft_synthetic_run(const weft_synthetic_request *request, const weft_p
     weft_code code = shot ? WEFT_OK : weft_fail_memory(error, "a plan", sizeof *shot);
     if (code == WEFT_OK) {
         weft_synthetic_plan(request, shot);
-        code = take_and_tell(request, shot, &content, progress, error);
+        code = take_and_record(request, shot, &content, progress, error);
     }
     free(shot);
     weft_virtual_sample_free(&content);

@@ -97,9 +97,9 @@ char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t
         json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
                   weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
     bool sensor = copy.sensor_faults != 0 || copy.dark_frames > 0 || copy.flat_frames > 0;
-    const bool told[GROUP_COUNT] = {true, true, copy.axes != 0, sensor, copy.cameras > 1};
+    const bool written[GROUP_COUNT] = {true, true, copy.axes != 0, sensor, copy.cameras > 1};
     for (int i = 0; root && i < GROUP_COUNT; i++) {
-        if (told[i])
+        if (written[i])
             weft_setting_group_write(&groups[i], &root);
     }
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;

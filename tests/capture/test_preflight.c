@@ -182,7 +182,7 @@ static weft_preflight check(fault injected)
     wrapped.settings.shortest_exposure_s = injected == WHITE_CLIPPED ? 1.0 / 60 : wrapped.settings.shortest_exposure_s;
     expect_ok(weft_preflight_run(&capture, &wrapped, NULL, &result, &error), &error);
     for (int kind = 0; kind < WEFT_CHECK_KINDS; kind++)
-        print_message("%d %s %s %g\n", (int)injected, weft_preflight_meaning_of[kind].name,
+        print_message("%d %s %s %g\n", (int)injected, weft_preflight_limits_of[kind].name,
                       !result.check[kind].done    ? "-"
                       : result.check[kind].passed ? "pass"
                                                   : "FAIL",

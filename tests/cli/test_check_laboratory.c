@@ -220,7 +220,7 @@ static void expect_only(weft_preflight *result, int failing, unsigned also)
 {
     for (int kind = 0; kind < WEFT_CHECK_KINDS; kind++) {
         const weft_preflight_check *c = &result->check[kind];
-        print_message("%s %g\n", weft_preflight_meaning_of[kind].name, c->value);
+        print_message("%s %g\n", weft_preflight_limits_of[kind].name, c->value);
         assert_true(c->done == (kind != WEFT_CHECK_LINEARITY) || also >> kind & 1);
         if (kind == failing)
             assert_true(c->done && !c->passed);

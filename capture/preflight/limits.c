@@ -2,7 +2,7 @@
 
 /* The limits are those of what registration can make good, with some room: a plate of which half the markers are seen
  * is found, and a point spread of 1.5 pixels is as wide as a texel of half the camera's resolution. */
-const weft_preflight_meaning weft_preflight_meaning_of[WEFT_CHECK_KINDS] = {
+const weft_preflight_limits weft_preflight_limits_of[WEFT_CHECK_KINDS] = {
     [WEFT_CHECK_TARGET] = {"target", "of 8 markers found", 4, true, 1, true,
                            "uncover the target, and see that all of it is in the picture"},
     [WEFT_CHECK_PLACE] = {"place", "mm from where the rig predicts the target", 5, false, 1, true,
