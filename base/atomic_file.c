@@ -258,6 +258,29 @@ weft_code weft_write_new_file(const char *path, const void *bytes, size_t size, 
     return code;
 }
 
+weft_code weft_code_of_reading(int number)
+{
+    switch (number) {
+    case ENOENT:
+    case ENOTDIR:
+        return WEFT_MISSING;
+    case ENOMEM:
+        return WEFT_OUT_OF_MEMORY;
+    case EIO:
+    case EMFILE:
+    case ENFILE:
+        return WEFT_SYSTEM;
+    default:
+        return WEFT_BAD_INPUT;
+    }
+}
+
+weft_code weft_fail_reading(weft_error *error, const char *action, const char *path)
+{
+    weft_code code = weft_code_of_reading(errno);
+    return weft_fail(error, code, "cannot %s '%s': %s", action, path, strerror(errno));
+}
+
 static weft_code read_descriptor(int descriptor, const char *path, size_t size, char **bytes, weft_error *error)
 {
     char *buffer = malloc(size + 1);
@@ -269,8 +292,9 @@ static weft_code read_descriptor(int descriptor, const char *path, size_t size, 
         if (got < 0 && errno == EINTR)
             continue;
         if (got <= 0) {
+            weft_code code = got < 0 ? weft_code_of_reading(errno) : WEFT_DAMAGED;
             free(buffer);
-            return weft_fail(error, WEFT_BAD_INPUT, "cannot read '%s': %s after %zu of %zu bytes", path,
+            return weft_fail(error, code, "cannot read '%s': %s after %zu of %zu bytes", path,
                              got < 0 ? strerror(errno) : "the file ends", done, size);
         }
         done += (size_t)got;
@@ -284,7 +308,7 @@ weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *s
 {
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': %s", path, strerror(errno));
+        return weft_fail_reading(error, "open", path);
     struct stat status;
     weft_code code;
     if (fstat(descriptor, &status) != 0)

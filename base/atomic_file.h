@@ -56,8 +56,15 @@ weft_code weft_sync_file(const char *path, weft_error *error);
 /* Waits until the names in the folder of `path` are on the disk. Not every file system can; nothing is said then. */
 void weft_sync_folder_of(const char *path);
 
-/* Reads a whole file. *bytes is NUL-terminated beyond *size, owned by the caller (free). Errors:
- * WEFT_BAD_INPUT where the file is missing, a folder, or larger than `limit` bytes. */
+/* The code for a file that could not be opened or read, by its errno: WEFT_MISSING where there is none,
+ * WEFT_OUT_OF_MEMORY, WEFT_SYSTEM where the disk or the number of open files is at fault, else WEFT_BAD_INPUT. Pure. */
+weft_code weft_code_of_reading(int number);
+
+/* Fills the error with "cannot ACTION 'PATH': strerror(errno)"; returns weft_code_of_reading(errno). */
+weft_code weft_fail_reading(weft_error *error, const char *action, const char *path);
+
+/* Reads a whole file. *bytes is NUL-terminated beyond *size, owned by the caller (free). Errors: weft_code_of_reading;
+ * WEFT_BAD_INPUT where it is a folder, or larger than `limit` bytes; WEFT_DAMAGED where it ends early. */
 weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *size, weft_error *error);
 
 /* The size of a file; 0 where there is none. */

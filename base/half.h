@@ -4,10 +4,9 @@
 #ifndef WEFT_BASE_HALF_H
 #define WEFT_BASE_HALF_H
 
-#include <stdint.h>
-#include <string.h>
+#include "base/real.h"
 
-typedef uint16_t weft_half;
+#include <string.h>
 
 static inline float weft_float_of_half(weft_half half)
 {

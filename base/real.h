@@ -6,18 +6,19 @@
 #define WEFT_BASE_REAL_H
 
 #if defined(WEFT_REAL_IS_FLOAT)
-typedef float weft_real;
+#define WEFT_REAL float
 #define WEFT_REAL_EPSILON 6e-8
 #define WEFT_PI 3.14159265358979323846
 #elif defined(WEFT_REAL_IS_QUAD)
-__extension__ typedef _Float128 weft_real;
+#define WEFT_REAL _Float128
 #define WEFT_REAL_EPSILON 1e-34
 #define WEFT_PI (__extension__ 3.14159265358979323846264338327950288f128)
 #else
-typedef double weft_real;
 #define WEFT_REAL_EPSILON 2e-16
 #define WEFT_PI 3.14159265358979323846
 #endif
+
+#include "weft/types.h"
 
 /* Marks a hot loop: compiled for AVX-512, AVX2 and the baseline, chosen when the program starts, which is before the
  * sanitizers are ready. */

@@ -1,6 +1,5 @@
 #include "base/status.h"
 
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,5 +26,5 @@ void weft_error_set(weft_error *error, weft_code code, const char *format, ...)
 
 void weft_error_set_errno(weft_error *error, const char *action, const char *path)
 {
-    weft_error_set(error, WEFT_SYSTEM, "cannot %s '%s': %s", action, path, strerror(errno));
+    weft_error_set(error, weft_code_of_errno(), "cannot %s '%s': %s", action, path, strerror(errno));
 }

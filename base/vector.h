@@ -1,23 +1,11 @@
-/* Vectors of three reals: directions (unit), positions and colours.
- *
- * Frame of every direction in Weft: right-handed, x along the weft (u), y along the warp (v),
- * z the surface normal. `light` points to the light and `view` to the camera, both unit and
- * away from the surface. All functions are pure. */
+/* Arithmetic of vectors (weft/types.h). Within the library the directions `light` and `view` are unit. All functions
+ * are pure. */
 #ifndef WEFT_BASE_VECTOR_H
 #define WEFT_BASE_VECTOR_H
 
 #include "base/real.h"
 
 #include <tgmath.h>
-
-typedef struct weft_vec3 {
-    weft_real x, y, z;
-} weft_vec3;
-
-/* Linear RGB. */
-typedef struct weft_rgb {
-    weft_real r, g, b;
-} weft_rgb;
 
 /* No compound literal: C++ includes this, too. */
 static inline weft_vec3 weft_vec3_of(weft_real x, weft_real y, weft_real z)

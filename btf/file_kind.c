@@ -128,7 +128,7 @@ weft_code weft_file_kind_of(const char *path, weft_file_kind *kind, weft_error *
 {
     struct stat status;
     if (stat(path, &status) != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "there is no file '%s'", path);
+        return weft_fail(error, WEFT_MISSING, "there is no file '%s'", path);
     *kind = WEFT_FILE_SESSION;
     if (S_ISDIR(status.st_mode))
         return WEFT_OK;

@@ -126,10 +126,10 @@ static weft_code check_bytes(const char *path, const expected_file *record, weft
     uint32_t crc32 = 0;
     WEFT_TRY(weft_file_crc(path, &bytes, &crc32, error));
     if (bytes != record->bytes)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %llu bytes, but %llu in the journal", path,
+        return weft_fail(error, WEFT_DAMAGED, "'%s' has %llu bytes, but %llu in the journal", path,
                          (unsigned long long)bytes, (unsigned long long)record->bytes);
     if (crc32 != record->crc32)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has the checksum %08x, but %08x in the journal", path, crc32,
+        return weft_fail(error, WEFT_DAMAGED, "'%s' has the checksum %08x, but %08x in the journal", path, crc32,
                          record->crc32);
     return WEFT_OK;
 }
@@ -185,7 +185,7 @@ static void note(shot_checks *checks, int shot, weft_session_problem_kind kind, 
     weft_progress_report(checks->progress, "checking photographs", ++checks->done, checks->total);
     if (found == WEFT_OK || checks->code != WEFT_OK)
         return;
-    if (found == WEFT_BAD_INPUT) {
+    if (weft_class_of(found) == WEFT_BAD_INPUT) {
         checks->code = weft_session_problems_add(checks->problems, kind, shot, what->message, checks->error);
         return;
     }
@@ -232,7 +232,7 @@ static weft_code check_frames(const weft_session *session, weft_session_problems
         weft_code found = record->taken
                               ? check_file(session, path, (expected_file){record->bytes, record->crc32}, &kind, &what)
                               : WEFT_OK;
-        if (found == WEFT_BAD_INPUT) {
+        if (weft_class_of(found) == WEFT_BAD_INPUT) {
             WEFT_TRY(weft_session_problems_add(problems, kind, -1, what.message, error));
             problems->problem[problems->count - 1].frame = frame;
         } else if (found != WEFT_OK) {

@@ -151,7 +151,7 @@ static weft_code check_all(const capture_command *command, weft_rig *rig, weft_e
             code = judge(command, one->camera_name, &found, error);
             weft_preflight_free(&found);
         }
-        if (code == WEFT_SYSTEM)
+        if (weft_class_of(code) == WEFT_SYSTEM)
             return code;
         result = result == WEFT_OK ? code : result;
     }

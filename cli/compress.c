@@ -254,7 +254,7 @@ static weft_code measure_held_out(run_state *state, weft_error *error)
     if (state->command->hold_out == 0)
         return WEFT_OK;
     weft_code code = measure_model(state, &state->options, &state->held_out, &own);
-    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
+    if (weft_class_of(code) == WEFT_BAD_USAGE || weft_class_of(code) == WEFT_BAD_INPUT) {
         weft_command_say(&state->command->common, "error on directions that were not fitted: not measured: %s",
                          own.message);
         state->held_out = (weft_hold_out){0};

@@ -1,4 +1,4 @@
-#include "import/import.h"
+#include "weft/import.h"
 #include "cli/command/arguments.h"
 #include "cli/command/heights.h"
 

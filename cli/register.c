@@ -1,19 +1,15 @@
-#include "base/atomic_file.h"
-#include "btf/session/camera_list.h"
 #include "cli/command/arguments.h"
 #include "cli/command/heights.h"
 #include "registration/registration.h"
 #include "registration/report/report.h"
 
-#include <limits.h>
 #include <stdio.h>
-#include <string.h>
 
 typedef struct register_command {
     weft_common_options common;
-    const char *input, *output, *report_folder, *colour;
-    int width, height;
-    bool allow_unfinished, heights;
+    const char *input, *output;
+    bool heights;
+    weft_register_options options;
 } register_command;
 
 enum { LARGEST_SIZE = 8192 };
@@ -26,16 +22,16 @@ static const weft_option option_table[] = {
     {"output", 'o', "NAME.btf.h5", "The dataset to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(register_command, output)},
     {"size", 's', "WxH", "Texels of the opening (default: 64x64)", .kind = WEFT_OPTION_SIZE,
-     .offset = offsetof(register_command, width), .high = LARGEST_SIZE},
+     .offset = offsetof(register_command, options.width), .high = LARGEST_SIZE},
     {"colour", .argument = "COLOUR.json|FOLDER",
      .help = "Colours of the camera under the lamp, from weft colour; for several cameras, a folder with a file for "
              "each, CAMERA.json (default: those in the session, if any)",
-     .kind = WEFT_OPTION_INPUT, .offset = offsetof(register_command, colour)},
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(register_command, options.colour)},
     WEFT_HEIGHTS_OPTION(register_command, heights),
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
-     .offset = offsetof(register_command, report_folder)},
+     .offset = offsetof(register_command, options.report_folder)},
     {"allow-unfinished", .help = "Register a session that is not finished", .kind = WEFT_OPTION_FLAG,
-     .offset = offsetof(register_command, allow_unfinished)},
+     .offset = offsetof(register_command, options.allow_unfinished)},
     {0},
 };
 
@@ -101,108 +97,27 @@ static weft_code say_outcome(const register_command *command, const weft_session
         weft_command_say(&command->common,
                          "colours: linear sRGB; mean error of a held-out patch of the chart: %.2f CIEDE2000",
                          session->colour.left_out.mean);
-    if (command->report_folder)
+    if (command->options.report_folder)
         weft_command_say_page(&command->common, "report", r->settings.report_folder);
     return WEFT_OK;
 }
 
-/* One camera, or several. */
-typedef struct cameras {
-    int count;
-    weft_camera_list list;
-    weft_session *session;                                 /* [count] */
-    weft_registration_settings settings[WEFT_CAMERAS_MAX]; /* [count] */
-    char report_folder[WEFT_CAMERAS_MAX][PATH_MAX];
-    weft_registration registration[WEFT_CAMERAS_MAX]; /* [count] */
-} cameras;
-
-/* Of one camera, the report lies in the folder asked for; of several, in a folder of each. */
-static weft_code choose_settings(const register_command *command, cameras *c, weft_error *error)
-{
-    if (c->list.count > 0 && command->report_folder)
-        WEFT_TRY(weft_make_folder(command->report_folder, error));
-    for (int i = 0; i < c->count; i++) {
-        weft_registration_settings *settings = &c->settings[i];
-        *settings = weft_registration_defaults(&c->session[i]);
-        settings->width = command->width;
-        settings->height = command->height;
-        settings->allow_unfinished = command->allow_unfinished;
-        settings->report_folder = command->report_folder;
-        if (c->list.count == 0 || !command->report_folder)
-            continue;
-        snprintf(c->report_folder[i], sizeof c->report_folder[i], "%s/%s", command->report_folder, c->list.name[i]);
-        settings->report_folder = c->report_folder[i];
-    }
-    return WEFT_OK;
-}
-
-/* What is the same for all cameras must be told of one model: the colours of another are others. */
-static weft_code take_one_colour(const register_command *command, cameras *c, weft_error *error)
-{
-    weft_colour colour;
-    WEFT_TRY(weft_colour_read(command->colour, &colour, error));
-    for (int i = 0; i < c->count; i++)
-        c->session[i].colour.terms = 0;
-    WEFT_TRY(weft_camera_sessions_agree(c->session, c->count, error));
-    for (int i = 0; i < c->count; i++)
-        c->session[i].colour = colour;
-    return WEFT_OK;
-}
-
-static weft_code take_colour_of_each(const register_command *command, cameras *c, weft_error *error)
-{
-    for (int i = 0; i < c->count; i++) {
-        char path[PATH_MAX];
-        WEFT_TRY(weft_camera_file(command->colour, c->list.name[i], path, sizeof path, error));
-        WEFT_TRY(weft_colour_read(path, &c->session[i].colour, error));
-    }
-    return WEFT_OK;
-}
-
-static weft_code take_colour(const register_command *command, cameras *c, weft_error *error)
-{
-    char path[PATH_MAX];
-    if (!command->colour)
-        return WEFT_OK;
-    bool is_file = weft_camera_file(command->colour, NULL, path, sizeof path, error) == WEFT_OK;
-    if (is_file)
-        return take_one_colour(command, c, error);
-    return c->list.count > 0 ? take_colour_of_each(command, c, error) : WEFT_BAD_INPUT;
-}
-
-static weft_code register_all(const register_command *command, cameras *c, const weft_progress *progress,
-                              weft_error *error)
-{
-    WEFT_TRY(weft_camera_list_read(command->input, &c->list, error));
-    WEFT_TRY(choose_settings(command, c, error));
-    WEFT_TRY(take_colour(command, c, error));
-    WEFT_TRY(
-        weft_register_cameras(c->session, c->count, command->output, c->settings, progress, c->registration, error));
-    weft_code code = WEFT_OK;
-    for (int i = 0; i < c->count; i++) {
-        if (c->count > 1)
-            weft_command_say(&command->common, "camera %s", c->session[i].folder);
-        if (code == WEFT_OK)
-            code = say_outcome(command, &c->session[i], &c->registration[i], error);
-        weft_registration_free(&c->registration[i]);
-    }
-    return code;
-}
-
 static int run(int argc, char **argv)
 {
-    register_command command = {.width = 64, .height = 64, .heights = true};
+    register_command command = {.heights = true};
     weft_arguments_parse(&weft_command_register, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
     weft_error error = {0};
-    static cameras c;
-    weft_code code = weft_camera_sessions_open(command.input, &c.session, &c.count, &error);
-    if (code != WEFT_OK)
-        return weft_command_exit("register", &command.common, code, &error);
-    code = register_all(&command, &c, &progress, &error);
+    weft_registered *found = NULL;
+    weft_code code = weft_register_folder(command.input, command.output, &command.options, &progress, &found, &error);
+    for (int i = 0; code == WEFT_OK && i < found->count; i++) {
+        if (found->count > 1)
+            weft_command_say(&command.common, "camera %s", found->session[i].folder);
+        code = say_outcome(&command, &found->session[i], &found->registration[i], &error);
+    }
+    weft_registered_free(found);
     if (code == WEFT_OK && command.heights)
         weft_heights_look(&command.common, command.output);
-    weft_camera_sessions_free(c.session, c.count);
     return weft_command_exit("register", &command.common, code, &error);
 }
 

@@ -73,7 +73,7 @@ find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video videoio aruco
 # A module is a folder. All modules make one library. weft_module(FOLDER USES module...) adds its sources: every C file, and the kernels
 # among them once for each instruction set. scripts/check_includes.py holds the sources to the modules that theirs USES.
 add_library(weft_objects OBJECT)
-target_include_directories(weft_objects PUBLIC ${CMAKE_SOURCE_DIR})
+target_include_directories(weft_objects PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/include)
 target_link_libraries(weft_objects PUBLIC weft_options OpenMP::OpenMP_C Threads::Threads ${CMAKE_DL_LIBS} PkgConfig::HDF5 PkgConfig::ZSTD PkgConfig::ZLIB
     PkgConfig::PNG PkgConfig::LCMS PkgConfig::JANSSON PkgConfig::GLFW PkgConfig::LAPACKE PkgConfig::IMGUI PkgConfig::STB PkgConfig::EPOXY PkgConfig::EGL
     PkgConfig::CONFUSE PkgConfig::GPHOTO2 PkgConfig::HIDAPI PkgConfig::CAIRO embree Ceres::ceres opencv_core opencv_imgproc opencv_calib3d opencv_aruco)
@@ -113,7 +113,7 @@ endif()
 # weft_kernel_options(TARGET SET). Multiply-adds in one rounding; vectors wider than a register never cross a call, so that their ABI does not matter.
 function(weft_kernel_options target set)
     target_link_libraries(${target} PRIVATE weft_options)
-    target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR})
+    target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/include)
     target_compile_definitions(${target} PRIVATE WEFT_INSTRUCTION_SET=${set})
     target_compile_options(${target} PRIVATE -O3 -ffp-contract=fast -fno-trapping-math -Wno-psabi ${WEFT_FLAGS_${set}})
 endfunction()
@@ -121,6 +121,11 @@ foreach(set ${WEFT_INSTRUCTION_SETS})
     add_library(weft_kernels_${set} OBJECT)
     weft_kernel_options(weft_kernels_${set} ${set})
 endforeach()
+
+# Executables and the shared library search this folder for plugins; RPATH, unlike RUNPATH, holds for a sanitizer's dlopen, too.
+set(WEFT_PLUGINS ${CMAKE_BINARY_DIR}/plugins)
+set(CMAKE_BUILD_RPATH ${WEFT_PLUGINS})
+add_link_options(-Wl,--disable-new-dtags)
 
 # weft_libraries(): the static library, for the program, tests and benches, and the shared one, for everybody else's programs.
 function(weft_libraries)
@@ -130,17 +135,21 @@ function(weft_libraries)
     endforeach()
     add_library(weft_static STATIC ${objects})
     set_target_properties(weft_static PROPERTIES OUTPUT_NAME weft)
-    target_include_directories(weft_static PUBLIC ${CMAKE_SOURCE_DIR})
+    target_include_directories(weft_static PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/include)
     target_link_libraries(weft_static PUBLIC $<TARGET_PROPERTY:weft_objects,INTERFACE_LINK_LIBRARIES>)
+    # It shows the functions of include/weft and nothing else, not even templates of C++.
+    add_library(weft_shared SHARED ${objects})
+    set_target_properties(weft_shared PROPERTIES OUTPUT_NAME weft EXPORT_NAME weft VERSION ${PROJECT_VERSION} SOVERSION 0
+        LINK_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/weft.map)
+    target_include_directories(weft_shared INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+    target_link_libraries(weft_shared PRIVATE $<TARGET_PROPERTY:weft_objects,INTERFACE_LINK_LIBRARIES>)
+    target_link_options(weft_shared PRIVATE -Wl,--as-needed -Wl,--version-script=${CMAKE_SOURCE_DIR}/cmake/weft.map)
 endfunction()
 
 # ---- Plugins ----
 #
 # weft_plugin(NAME FOLDER SOURCES file... USES package...): sources whose packages are slow to load, as NAME.so, which the library opens when
-# it is needed. Executables search this folder for them; RPATH, unlike RUNPATH, holds for a sanitizer's dlopen, too.
-set(WEFT_PLUGINS ${CMAKE_BINARY_DIR}/plugins)
-set(CMAKE_BUILD_RPATH ${WEFT_PLUGINS})
-add_link_options(-Wl,--disable-new-dtags)
+# it is needed.
 add_custom_target(weft_plugins)
 function(weft_plugin name folder)
     cmake_parse_arguments(plugin "" "" "SOURCES;USES" ${ARGN})

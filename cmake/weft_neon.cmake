@@ -7,7 +7,7 @@ find_program(WEFT_NEON_RUNNER qemu-aarch64)
 # calls may lack what they call. Path: ${NAME}_PATH.
 function(weft_neon_program name)
     # What is computed is checked here, not how fast: -O1 compiles in half the time.
-    set(flags -std=c17 -D_GNU_SOURCE -I${CMAKE_SOURCE_DIR} -O1 -Wall -Wextra -Werror -fno-math-errno
+    set(flags -std=c17 -D_GNU_SOURCE -I${CMAKE_SOURCE_DIR} -I${CMAKE_SOURCE_DIR}/include -O1 -Wall -Wextra -Werror -fno-math-errno
         -DWEFT_INSTRUCTION_SET=baseline -ffp-contract=fast -fno-trapping-math -Wno-psabi -ffunction-sections)
     set(objects)
     foreach(source ${ARGN})

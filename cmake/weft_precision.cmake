@@ -18,7 +18,7 @@ function(weft_precision name)
     set_target_properties(${name} PROPERTIES C_VISIBILITY_PRESET hidden)
     target_compile_definitions(${name} PUBLIC ${ARGN})
     target_link_libraries(${name} PUBLIC weft_options OpenMP::OpenMP_C)
-    target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
+    target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/include)
 endfunction()
 
 weft_precision(weft_single_precision WEFT_REAL_IS_FLOAT)

@@ -300,3 +300,18 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
         *report = own;
     return code;
 }
+
+weft_code weft_material_fit(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
+                            weft_material **result, weft_error *error)
+{
+    const weft_compress_options usual = weft_compress_default_options();
+    weft_material *material = malloc(sizeof *material);
+    if (!material)
+        return weft_fail_memory(error, "material", sizeof *material);
+    weft_code code = weft_compress(dataset, options ? options : &usual, progress, material, NULL, error);
+    if (code == WEFT_OK)
+        *result = material;
+    else
+        free(material);
+    return code;
+}

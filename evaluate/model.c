@@ -89,9 +89,11 @@ static weft_code open_microcylinder(weft_model *model, const char *path, const w
 
 weft_code weft_model_open(const char *path, const weft_model_options *options, weft_model **result, weft_error *error)
 {
+    static const weft_model_options usual = {0};
     weft_model *model = calloc(1, sizeof *model);
     if (!model)
         return weft_fail_memory(error, "model", sizeof *model);
+    options = options ? options : &usual;
     model->noise_seed = options->noise_seed;
     model->weighting = options->as_printed ? WEFT_CLOTH_AS_PRINTED : WEFT_CLOTH_BY_AREA;
     weft_code code = weft_file_kind_of(path, &model->kind, error);
@@ -270,4 +272,25 @@ weft_rgb weft_model_half_width(const weft_model *model, const weft_query *query,
 bool weft_model_has_interval(const weft_model *model)
 {
     return model->has_interval;
+}
+
+const weft_material *weft_model_material(const weft_model *model)
+{
+    return model->kind == WEFT_FILE_MATERIAL ? &model->material : NULL;
+}
+
+bool weft_model_is_thread_safe(const weft_model *model)
+{
+    return model->kind != WEFT_FILE_DATASET;
+}
+
+weft_real weft_model_opacity(const weft_model *model, const weft_query *query)
+{
+    if (!(query->view.z > 0))
+        return 0;
+    if (model->kind != WEFT_FILE_MATERIAL)
+        return 1;
+    return weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v, query->view,
+                                query->view)
+        .a;
 }

@@ -9,7 +9,7 @@ static weft_code check_folder(const char *folder, weft_error *error)
 {
     struct stat status;
     if (stat(folder, &status) != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "there is no folder '%s'", folder);
+        return weft_fail(error, WEFT_MISSING, "there is no folder '%s'", folder);
     if (!S_ISDIR(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT,
                          "'%s' is not a folder of photographs, nor a BTF of Bonn (unpack an archive first)", folder);

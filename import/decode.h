@@ -4,7 +4,7 @@
 
 #include "base/picture/colour_claim.h"
 #include "import/collection.h"
-#include "import/import.h"
+#include "weft/import.h"
 
 #include <stddef.h>
 

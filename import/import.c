@@ -1,6 +1,7 @@
-#include "import/import.h"
+#include "weft/import.h"
 
 #include "base/picture/image.h"
+#include "base/progress.h"
 #include "btf/file_kind.h"
 #include "import/readers.h"
 #include "import/reduce.h"

@@ -10,6 +10,13 @@ static weft_code note_photograph(weft_import_run *run, int count, const char *wh
     return WEFT_OK;
 }
 
+/* What is wrong with one photograph: it is missing, damaged, of a kind that is not read, or unlike the others. A
+ * failure of the memory or the disk is never skipped. */
+static bool may_be_skipped(weft_code code)
+{
+    return weft_class_of(code) == WEFT_BAD_INPUT;
+}
+
 /* Called in the critical section. */
 static void count_image(weft_import_run *run, int index, weft_code code, const weft_error *error,
                         const weft_decoded *decoded)
@@ -18,7 +25,7 @@ static void count_image(weft_import_run *run, int index, weft_code code, const w
     weft_import_report *report = run->report;
     if (photograph->missing) {
         run->code = note_photograph(run, ++report->missing_count, "missing, masked:", photograph->name, "");
-    } else if (code == WEFT_BAD_INPUT && run->options->skip_bad) {
+    } else if (may_be_skipped(code) && run->options->skip_bad) {
         run->code = note_photograph(run, ++report->skipped_count, "skipped, masked:", photograph->name, error->message);
     } else if (code != WEFT_OK) {
         run->code = code;

@@ -2,9 +2,10 @@
 #ifndef WEFT_IMPORT_RUN_H
 #define WEFT_IMPORT_RUN_H
 
+#include "base/progress.h"
 #include "import/bonn/file.h"
 #include "import/decode.h"
-#include "import/import.h"
+#include "weft/import.h"
 
 /* ---- What photographs say of their colours ---- */
 

@@ -380,3 +380,30 @@ weft_code weft_verify(const char *path, const weft_progress *progress, json_t **
 {
     return inspect_any(path, progress, true, result, error);
 }
+
+/* ---- As text ---- */
+
+static weft_code as_text(weft_code code, json_t *description, char **json, weft_error *error)
+{
+    *json = NULL;
+    if (code == WEFT_OK) {
+        *json = json_dumps(description, JSON_INDENT(2));
+        code = *json ? WEFT_OK : weft_fail_memory(error, "description", 0);
+    }
+    json_decref(description);
+    return code;
+}
+
+weft_code weft_info(const char *path, char **json, weft_error *error)
+{
+    json_t *description;
+    weft_code code = weft_inspect(path, &description, error);
+    return as_text(code, description, json, error);
+}
+
+weft_code weft_check(const char *path, const weft_progress *progress, char **json, weft_error *error)
+{
+    json_t *description;
+    weft_code code = weft_verify(path, progress, &description, error);
+    return as_text(code, description, json, error);
+}

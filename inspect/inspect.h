@@ -4,6 +4,7 @@
 
 #include "base/progress.h"
 #include "base/status.h"
+#include "weft/inspect.h"
 
 #include <jansson.h>
 

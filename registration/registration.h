@@ -3,7 +3,11 @@
 #define WEFT_REGISTRATION_REGISTRATION_H
 
 #include "base/progress.h"
+#include "btf/session/camera_list.h"
 #include "registration/outcome/outcome.h"
+#include "weft/register.h"
+
+#include <limits.h>
 
 /* 64 x 64 texels; a view within an eighth of the opening of the predicted pose, correlated with its drawing by 0.8. */
 weft_registration_settings weft_registration_defaults(const weft_session *session);
@@ -24,5 +28,24 @@ weft_code weft_register_session(const weft_session *session, const char *output,
 weft_code weft_register_cameras(const weft_session *sessions, int count, const char *output,
                                 const weft_registration_settings *settings, const weft_progress *progress,
                                 weft_registration *registrations, weft_error *error);
+
+/* What came of the session in a folder, of one camera or of several. */
+typedef struct weft_registered {
+    int count;
+    weft_camera_list list; /* empty where there is one camera without a name */
+    bool is_done;
+    weft_session *session;                                 /* [count] */
+    weft_registration_settings settings[WEFT_CAMERAS_MAX]; /* [count] */
+    char report_folder[WEFT_CAMERAS_MAX][PATH_MAX];
+    weft_registration registration[WEFT_CAMERAS_MAX]; /* [count] */
+} weft_registered;
+
+/* weft_register, with all that was found; the caller frees *result with weft_registered_free. Errors: those of
+ * weft_register. */
+weft_code weft_register_folder(const char *folder, const char *output, const weft_register_options *options,
+                               const weft_progress *progress, weft_registered **result, weft_error *error);
+
+/* NULL is fine. */
+void weft_registered_free(weft_registered *registered);
 
 #endif

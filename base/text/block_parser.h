@@ -56,12 +56,6 @@ bool weft_token_is_word(const weft_token *token, const char *word);
 /* At most this many bytes of a token appear in messages: the precision of "%.*s". */
 int weft_token_shown(const weft_token *token);
 
-/* A value for a `$name` in a file: scalars use `value.r`. */
-typedef struct weft_parameter {
-    const char *name;
-    weft_rgb value;
-} weft_parameter;
-
 typedef struct weft_block_parser {
     weft_lexer lexer; /* started and ended by the owner */
     weft_error *error;

@@ -73,7 +73,7 @@ static weft_code check_kind(const json_t *root, const char *path, const weft_jso
     if (!json_is_integer(version))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s", path, kind->is_none);
     if (json_integer_value(version) != kind->version)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s of version %lld, this program reads version %d", path,
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' %s of version %lld, this program reads version %d", path,
                          kind->is_one, (long long)json_integer_value(version), kind->version);
     return WEFT_OK;
 }

@@ -3,15 +3,10 @@
 #define WEFT_BASE_TEXT_LINES_H
 
 #include "base/status.h"
-
-typedef struct weft_lines {
-    int count;
-    char **line; /* [count] */
-} weft_lines;
+#include "weft/progress.h"
 
 /* Appends a formatted line. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_lines_add(weft_lines *lines, weft_error *error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-void weft_lines_free(weft_lines *lines);
 
 #endif

@@ -1,4 +1,5 @@
 #include "base/text/text_file.h"
+#include "base/atomic_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -25,8 +26,7 @@ weft_code weft_text_file_read(const char *path, char **result, weft_error *error
 {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return weft_fail(error, errno == ENOMEM ? WEFT_SYSTEM : WEFT_BAD_INPUT, "cannot read '%s': %s", path,
-                         strerror(errno));
+        return weft_fail_reading(error, "read", path);
     char *text = malloc(WEFT_TEXT_FILE_MAX_BYTES + 2);
     weft_code code =
         text ? read_stream(file, path, text, error) : weft_fail_memory(error, path, WEFT_TEXT_FILE_MAX_BYTES + 2);

@@ -1,3 +1,4 @@
+#include "base/atomic_file.h"
 #include "btf/dataset/hdf5.h"
 
 #include <errno.h>
@@ -152,8 +153,9 @@ static weft_code read_attributes(weft_dataset *dataset, weft_error *error)
     WEFT_TRY(read_text_attribute(dataset, "format", format, error));
     WEFT_TRY(read_number_attribute(dataset, "version", &version, error));
     if (strcmp(format, WEFT_DATASET_FORMAT) != 0 || version != WEFT_DATASET_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has format '%s' version %g, this program reads '%s' version %d",
-                         dataset->path, format, version, WEFT_DATASET_FORMAT, WEFT_DATASET_VERSION);
+        return weft_fail(error, WEFT_NOT_SUPPORTED,
+                         "'%s' has format '%s' version %g, this program reads '%s' version %d", dataset->path, format,
+                         version, WEFT_DATASET_FORMAT, WEFT_DATASET_VERSION);
     WEFT_TRY(read_choice(dataset, "values", weft_values_name, &values, error));
     WEFT_TRY(read_choice(dataset, "distance", weft_distance_name, &distance, error));
     dataset->layout.values = (weft_values)values;
@@ -378,7 +380,7 @@ static weft_code open_file(weft_dataset *dataset, weft_error *error)
 {
     struct stat status;
     if (stat(dataset->path, &status) != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': %s", dataset->path, strerror(errno));
+        return weft_fail_reading(error, "open", dataset->path);
     if (!S_ISREG(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': not a regular file", dataset->path);
     if (is_material(dataset->path))
@@ -392,7 +394,7 @@ static weft_code open_file(weft_dataset *dataset, weft_error *error)
     const char *cause = weft_hdf5_cause();
     H5Pclose(access);
     if (dataset->file < 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s' as HDF5 (%llu bytes): %s", dataset->path,
+        return weft_fail(error, WEFT_DAMAGED, "cannot open '%s' as HDF5 (%llu bytes): %s", dataset->path,
                          (unsigned long long)dataset->file_size, cause);
     dataset->half = weft_hdf5_half_type();
     dataset->transfer = weft_hdf5_whole_transfer();

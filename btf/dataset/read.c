@@ -19,8 +19,8 @@ static weft_code read_slab(const weft_dataset *dataset, hid_t object, const char
                 H5Dread(object, memory_type, memory, space, dataset->transfer, buffer) >= 0;
     weft_code code = WEFT_OK;
     if (!done)
-        code = weft_fail(error, WEFT_BAD_INPUT, "'%s': cannot read '%s' of %d x %d texels at (%d, %d): %s",
-                         dataset->path, name, block.width, block.height, block.x, block.y, weft_hdf5_cause());
+        code = weft_fail(error, WEFT_DAMAGED, "'%s': cannot read '%s' of %d x %d texels at (%d, %d): %s", dataset->path,
+                         name, block.width, block.height, block.x, block.y, weft_hdf5_cause());
     H5Sclose(memory);
     H5Sclose(space);
     return code;
@@ -141,7 +141,7 @@ bool weft_dataset_has_heights(const weft_dataset *dataset)
 static weft_code read_height_values(const weft_dataset *dataset, weft_dataset_heights *heights, weft_error *error)
 {
     if (H5Dread(dataset->heights, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, dataset->transfer, heights->value) < 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': cannot read 'height': %s", dataset->path, weft_hdf5_cause());
+        return weft_fail(error, WEFT_DAMAGED, "'%s': cannot read 'height': %s", dataset->path, weft_hdf5_cause());
     return weft_dataset_heights_check(&dataset->layout, heights, dataset->path, WEFT_BAD_INPUT, error);
 }
 

@@ -53,32 +53,31 @@ static weft_code check_header(weft_material_file *file, weft_error *error)
     if (memcmp(file->bytes, weft_format_magic, start) != 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file", file->path);
     if (file->size < WEFT_FORMAT_HEADER_SIZE)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is cut: %zu bytes, the header alone has %d", file->path,
-                         file->size, WEFT_FORMAT_HEADER_SIZE);
+        return weft_fail(error, WEFT_DAMAGED, "'%s' is cut: %zu bytes, the header alone has %d", file->path, file->size,
+                         WEFT_FORMAT_HEADER_SIZE);
     file->version = u32_at(file->bytes + 8);
     uint32_t sections = u32_at(file->bytes + 12);
     uint64_t size = u64_at(file->bytes + 16);
     if (file->version == 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: version 0 of the format", file->path);
+        return weft_fail(error, WEFT_DAMAGED, "'%s' is damaged: version 0 of the format", file->path);
     if (file->version > WEFT_FORMAT_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT,
+        return weft_fail(error, WEFT_NOT_SUPPORTED,
                          "'%s' was written by a newer Weft: version %u of the format, this program reads up to %d",
                          file->path, file->version, WEFT_FORMAT_VERSION);
     if (size != file->size)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is %s: %zu bytes, its header says %llu", file->path,
+        return weft_fail(error, WEFT_DAMAGED, "'%s' is %s: %zu bytes, its header says %llu", file->path,
                          file->size < size ? "cut" : "too long", file->size, (unsigned long long)size);
     if (sections < 1 || sections > WEFT_FORMAT_MAX_SECTIONS)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %u sections, must be 1 to %d", file->path, sections,
+        return weft_fail(error, WEFT_DAMAGED, "'%s' has %u sections, must be 1 to %d", file->path, sections,
                          WEFT_FORMAT_MAX_SECTIONS);
     size_t table_size = (size_t)sections * WEFT_FORMAT_ENTRY_SIZE;
     if (file->size - WEFT_FORMAT_HEADER_SIZE < table_size)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is cut: no room for its table of %u sections", file->path,
+        return weft_fail(error, WEFT_DAMAGED, "'%s' is cut: no room for its table of %u sections", file->path,
                          sections);
     uLong checksum = crc32_z(0, file->bytes, WEFT_FORMAT_HEADER_SIZE - 4);
     checksum = crc32_z(checksum, file->bytes + WEFT_FORMAT_HEADER_SIZE, table_size);
     if (checksum != u32_at(file->bytes + 60))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: checksum of the header and section table",
-                         file->path);
+        return weft_fail(error, WEFT_DAMAGED, "'%s' is damaged: checksum of the header and section table", file->path);
     return WEFT_OK;
 }
 
@@ -92,14 +91,14 @@ static weft_code read_features(weft_material_file *file, weft_error *cause)
     file->kind_count = WEFT_FORMAT_KINDS;
     file->component_count = weft_limited_int(components);
     if (!(file->features & (WEFT_FEATURE_LOBES | WEFT_FEATURE_COMPONENTS)))
-        return weft_fail(cause, WEFT_BAD_INPUT, "it has neither lobes nor components");
+        return weft_fail(cause, WEFT_DAMAGED, "it has neither lobes nor components");
     if (has_components != (components > 0) || components > WEFT_COMPONENTS_MAX)
-        return weft_fail(cause, WEFT_BAD_INPUT, "number of components is %u", components);
+        return weft_fail(cause, WEFT_DAMAGED, "number of components is %u", components);
     if (!(file->features & WEFT_FEATURE_LOBES) && u32_at(file->bytes + 36) > 0)
-        return weft_fail(cause, WEFT_BAD_INPUT, "it has a number of lobes without the feature");
+        return weft_fail(cause, WEFT_DAMAGED, "it has a number of lobes without the feature");
     bool has_views = file->features & WEFT_FEATURE_VIEWS;
     if (has_views != (u32_at(file->bytes + 40) > 0) || ((file->features & WEFT_FEATURE_OPACITY) && !has_views))
-        return weft_fail(cause, WEFT_BAD_INPUT, "number of views is %u", u32_at(file->bytes + 40));
+        return weft_fail(cause, WEFT_DAMAGED, "number of views is %u", u32_at(file->bytes + 40));
     return WEFT_OK;
 }
 
@@ -113,15 +112,14 @@ static weft_code read_shape(weft_material_file *file, weft_material *material, w
         material, weft_limited_int(u32_at(b + 24)), weft_limited_int(u32_at(b + 28)), level_count,
         weft_limited_int(u32_at(b + 36)), weft_limited_int(u32_at(b + 40)), lights, &cause);
     if (code == WEFT_OK && level_count == 0)
-        code = weft_fail(&cause, WEFT_BAD_INPUT, "number of levels is 0, must be at least 1");
+        code = weft_fail(&cause, WEFT_DAMAGED, "number of levels is 0, must be at least 1");
     memcpy(&material->texel_pitch_mm, b + 48, sizeof material->texel_pitch_mm);
     if (code == WEFT_OK && !(material->texel_pitch_mm > 0 && isfinite(material->texel_pitch_mm)))
-        code = weft_fail(&cause, WEFT_BAD_INPUT, "texel pitch is %g mm", material->texel_pitch_mm);
+        code = weft_fail(&cause, WEFT_DAMAGED, "texel pitch is %g mm", material->texel_pitch_mm);
     if (code == WEFT_OK)
         code = read_features(file, &cause);
     material->has_lobes = file->version == 1 || file->features & WEFT_FEATURE_LOBES;
-    return code == WEFT_OK ? WEFT_OK
-                           : weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: %s", file->path, cause.message);
+    return code == WEFT_OK ? WEFT_OK : weft_fail(error, WEFT_DAMAGED, "'%s' is damaged: %s", file->path, cause.message);
 }
 
 /* ---- The table ---- */
@@ -141,7 +139,7 @@ static weft_section parse_entry(const unsigned char *entry)
 weft_code weft_fail_section(const weft_material_file *file, const weft_section *section, weft_error *error,
                             const char *what)
 {
-    return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: section %s of level %u: %s", file->path, section->type,
+    return weft_fail(error, WEFT_DAMAGED, "'%s' is damaged: section %s of level %u: %s", file->path, section->type,
                      section->level, what);
 }
 
@@ -241,7 +239,7 @@ static weft_code check_kind(const weft_material_file *file, int index, const wef
             return weft_fail_section(file, weft_file_section(file, index, k), error,
                                      "the material has no such section");
         if (!is_found && is_there)
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: section %s of level %d is missing", file->path,
+            return weft_fail(error, WEFT_DAMAGED, "'%s' is damaged: section %s of level %d is missing", file->path,
                              kind->type, k);
         if (is_found)
             WEFT_TRY(check_size(file, kind, material, weft_file_section(file, index, k), error));
@@ -264,7 +262,7 @@ static weft_code read_table(weft_material_file *file, const weft_material *mater
         WEFT_TRY(note_section(file, i, material, error));
     }
     if (end != file->size)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: %llu bytes follow its last section", file->path,
+        return weft_fail(error, WEFT_DAMAGED, "'%s' is damaged: %llu bytes follow its last section", file->path,
                          (unsigned long long)(file->size - end));
     for (int kind = 0; kind < file->kind_count; kind++)
         WEFT_TRY(check_kind(file, kind, material, error));
@@ -290,7 +288,7 @@ weft_code weft_material_file_open(weft_material_file *file, weft_material *mater
         unknown = file->features & (WEFT_FEATURE_OPTIONAL - 1) & ~(uint32_t)KNOWN_FEATURES;
     }
     if (unknown)
-        return weft_fail(error, WEFT_BAD_INPUT,
+        return weft_fail(error, WEFT_NOT_SUPPORTED,
                          "'%s' was written by a newer Weft: it needs features 0x%x, which this program does not know",
                          file->path, unknown);
     WEFT_TRY(read_shape(file, material, error));

@@ -212,3 +212,47 @@ bool weft_material_has_holes(const weft_material *material)
     }
     return false;
 }
+
+/* ---- For other programs ---- */
+
+void weft_material_close(weft_material *material)
+{
+    if (material)
+        weft_material_free(material);
+    free(material);
+}
+
+int weft_material_level_count(const weft_material *material)
+{
+    return material->level_count;
+}
+
+int weft_material_width(const weft_material *material, int level)
+{
+    return material->level[level].width;
+}
+
+int weft_material_height(const weft_material *material, int level)
+{
+    return material->level[level].height;
+}
+
+double weft_material_texel_pitch_mm(const weft_material *material)
+{
+    return material->texel_pitch_mm;
+}
+
+int weft_material_component_count(const weft_material *material)
+{
+    return material->components ? material->components->component_count : 0;
+}
+
+int weft_material_lobe_count(const weft_material *material)
+{
+    return material->lobe_count;
+}
+
+const char *weft_material_metadata(const weft_material *material)
+{
+    return material->metadata;
+}

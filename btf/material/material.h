@@ -1,5 +1,4 @@
-/* The material NAME.weft: what compress writes and the player and other renderers read.
- * The file format is docs/reference/weft-format.md; this is its image in memory, laid out as it is uploaded to a GPU.
+/* The material of weft/material.h in memory, laid out as it is uploaded to a GPU.
  *
  * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi, with a table of lights beside the one of views:
  *     f(l, v) = T(v) S(l) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)
@@ -15,9 +14,7 @@
 #include "btf/material/components.h"
 #include "btf/material/heights.h"
 #include "btf/material/visibility.h"
-
-#include <stdbool.h>
-#include <stdint.h>
+#include "weft/material.h"
 
 enum {
     WEFT_MATERIAL_MAX_LOBES = 3,
@@ -42,7 +39,7 @@ typedef struct weft_material_level {
 } weft_material_level;
 
 /* Its reflectance by lobes, by components, or by both, of which components are nearer to the photographs. */
-typedef struct weft_material {
+struct weft_material {
     bool has_lobes;        /* diffuse terms and frames, and lobe_count lobes */
     int lobe_count;        /* 0..WEFT_MATERIAL_MAX_LOBES */
     int level_count;       /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
@@ -56,7 +53,7 @@ typedef struct weft_material {
     weft_material_heights *heights;       /* that its components are seen through; NULL without */
     weft_material_visibility *visibility; /* what the scene reaches that it was pruned for; NULL where it was not */
     char *metadata;                       /* JSON text: provenance, fit settings; never NULL once read */
-} weft_material;
+};
 
 /* Allocates all arrays of a material of lobes (zeroed) for a level 0 of width x height; full mip chain when
  * `with_levels`, else one level. metadata = "{}". Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
@@ -70,13 +67,6 @@ void weft_material_free(weft_material *material);
 
 /* Sets the ceiling of a texel: the least half float that is not below `value`; 0 or less: none. Thread-safe. */
 void weft_material_set_ceiling(weft_material_level *level, size_t texel, float value);
-
-/* Takes the finest level away, of components, heights and visibility, too: the same material with a quarter of the
- * texels. Does nothing where there is but one. */
-void weft_material_drop_finest(weft_material *material);
-
-/* Takes the coarsest level away, of components, too. Does nothing where there is but one. */
-void weft_material_drop_coarsest(weft_material *material);
 
 /* Puts heights, which are taken, into the place of those that it has; NULL: none. */
 void weft_material_take_heights(weft_material *material, weft_material_heights *heights);
@@ -92,17 +82,8 @@ bool weft_material_has_components_alone(const weft_material *material);
  * term beside the components"; NULL without components. Pure. */
 const char *weft_material_errors_of(const weft_material *material);
 
-/* Whether any texel has an opacity below 1 in any view. Pure. */
-bool weft_material_has_holes(const weft_material *material);
-
 /* Whether it can be written: not where it has a light table, of a file of version 1. Errors: WEFT_BAD_USAGE. */
 weft_code weft_material_check_writable(const weft_material *material, weft_error *error);
-
-/* Writes version 2 atomically. The values of components are rounded as weft_components_round_values does at its finest.
- * Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
- * terms or exponents, directions that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
- * WEFT_SYSTEM. */
-weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);
 
 /* Bytes of the file that weft_material_write would write. Errors: as there. */
 weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error);
@@ -110,8 +91,7 @@ weft_code weft_material_size(const weft_material *material, uint64_t *size, weft
 /* The same in two parts: what grows with the number of texels, and what all of them share. Errors: as there. */
 weft_code weft_material_weigh(const weft_material *material, uint64_t *by_texels, uint64_t *shared, weft_error *error);
 
-/* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.
- * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */
+/* weft_material_open into a struct of the caller, who frees with weft_material_free. */
 weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
 
 /* The metadata alone; the caller frees. Errors: as above, as far as the container and the metadata show them. */

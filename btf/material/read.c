@@ -91,6 +91,19 @@ weft_code weft_material_read(const char *path, weft_material *material, weft_err
     return code;
 }
 
+weft_code weft_material_open(const char *path, weft_material **result, weft_error *error)
+{
+    weft_material *material = malloc(sizeof *material);
+    if (!material)
+        return weft_fail_memory(error, "material", sizeof *material);
+    weft_code code = weft_material_read(path, material, error);
+    if (code == WEFT_OK)
+        *result = material;
+    else
+        free(material);
+    return code;
+}
+
 weft_code weft_material_read_metadata(const char *path, char **metadata, weft_error *error)
 {
     weft_material material = {0};

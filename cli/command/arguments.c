@@ -117,7 +117,7 @@ static void insist(weft_code code, const weft_error *error, struct argp_state *s
     if (code == WEFT_BAD_USAGE)
         argp_error(state, "%s", error->message);
     else if (code != WEFT_OK)
-        argp_failure(state, (int)code, 0, "%s", error->message);
+        argp_failure(state, (int)weft_class_of(code), 0, "%s", error->message);
 }
 
 static weft_code give(arguments *a, const weft_setting *setting, const char *text, weft_error *error)

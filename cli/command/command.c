@@ -150,7 +150,7 @@ int weft_command_exit(const char *command, const weft_common_options *common, we
         return WEFT_OK;
     fprintf(stderr, "weft %s: %s\n", command, error->message);
     if (common->json && !common->quiet)
-        print_event(json_pack("{ss si so}", "event", "error", "code", (int)code, "text",
+        print_event(json_pack("{ss si so}", "event", "error", "code", (int)weft_class_of(code), "text",
                               weft_json_text(error->message, strlen(error->message))));
-    return (int)code;
+    return (int)weft_class_of(code);
 }

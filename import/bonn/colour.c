@@ -38,7 +38,7 @@ static bool is_read(int model)
 weft_code weft_bonn_colour_check(const weft_bonn_colour *colour, const char *path, weft_error *error)
 {
     if (!is_read(colour->model))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': its colours are of model %d%s, which is not read", path,
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s': its colours are of model %d%s, which is not read", path,
                          colour->model, name_of(colour->model));
     if (colour->model != WEFT_BONN_PCA)
         return WEFT_OK;

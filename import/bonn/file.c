@@ -42,10 +42,10 @@ static weft_code read_signature(weft_bonn_reader *reader, const struct signature
     WEFT_TRY(weft_bonn_reader_take(reader, head, size, error));
     *signature = signature_of(head);
     if (!*signature)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' begins with '%s': read are !DFMF08FC, !FMF06FC and !FMF12FCE",
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' begins with '%s': read are !DFMF08FC, !FMF06FC and !FMF12FCE",
                          reader->path, head);
     if ((*signature)->kind == NOT_READ)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds %s, which are not read: DFMF and FMF are", reader->path,
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' holds %s, which are not read: DFMF and FMF are", reader->path,
                          (*signature)->words);
     size_t length = strlen((*signature)->text);
     *has_frames = head[length] == 'R';
@@ -78,8 +78,8 @@ static weft_code read_channel_names(weft_bonn_reader *reader, weft_error *error)
     uint32_t count, length;
     WEFT_TRY(weft_bonn_reader_whole(reader, &count, error));
     if (count != WEFT_BONN_CHANNELS)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %u channels of colour: files of red, green and blue are read",
-                         reader->path, count);
+        return weft_fail(error, WEFT_NOT_SUPPORTED,
+                         "'%s' has %u channels of colour: files of red, green and blue are read", reader->path, count);
     for (uint32_t i = 0; i < count; i++) {
         char name[32] = "";
         WEFT_TRY(weft_bonn_reader_whole(reader, &length, error));
@@ -87,7 +87,7 @@ static weft_code read_channel_names(weft_bonn_reader *reader, weft_error *error)
         WEFT_TRY(weft_bonn_reader_take(reader, name, kept, error));
         WEFT_TRY(weft_bonn_reader_skip(reader, length - kept, error));
         if (is_number(name))
-            return weft_fail(error, WEFT_BAD_INPUT,
+            return weft_fail(error, WEFT_NOT_SUPPORTED,
                              "'%s' is multispectral (channel '%s'): files of red, green and blue are read",
                              reader->path, name);
     }
@@ -119,7 +119,7 @@ static weft_code read_description(weft_bonn_reader *reader, weft_bonn_file *file
     WEFT_TRY(weft_bonn_reader_whole(reader, &size, error));
     WEFT_TRY(weft_bonn_reader_whole(reader, &version, error));
     if (version < 1 || version > newest)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is of version %u: 1 to %u are read", reader->path, version,
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' is of version %u: 1 to %u are read", reader->path, version,
                          newest);
     WEFT_TRY(read_words(reader, file->setup, error));
     WEFT_TRY(read_words(reader, file->sensor, error));
@@ -129,7 +129,7 @@ static weft_code read_description(weft_bonn_reader *reader, weft_bonn_file *file
     WEFT_TRY(read_additions(reader, version, file, error));
     file->pixels_per_mm = (double)pixels_per_mm;
     if (begin - reader->left != size)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': its description is to have %u bytes and has %llu", reader->path,
+        return weft_fail(error, WEFT_DAMAGED, "'%s': its description is to have %u bytes and has %llu", reader->path,
                          size, (unsigned long long)(begin - reader->left));
     return WEFT_OK;
 }
@@ -274,7 +274,7 @@ static weft_code read_header(weft_bonn_reader *reader, weft_bonn_file *file, wef
     uint32_t logarithm = 0;
     WEFT_TRY(weft_bonn_reader_byte(reader, &version, error));
     if (version > 2)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': its header is of version %u: 0 to 2 are read", reader->path,
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s': its header is of version %u: 0 to 2 are read", reader->path,
                          version);
     if (version > 0)
         WEFT_TRY(weft_bonn_reader_whole(reader, &logarithm, error));

@@ -1,5 +1,7 @@
 #include "import/bonn/reader.h"
 
+#include "base/atomic_file.h"
+
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -8,10 +10,8 @@ weft_code weft_bonn_reader_open(const char *path, weft_bonn_reader *reader, weft
 {
     struct stat status;
     *reader = (weft_bonn_reader){.path = path, .stream = fopen(path, "rbe"), .section = "first bytes"};
-    if (!reader->stream && errno == ENOMEM)
-        return weft_fail_memory(error, "file", BUFSIZ);
     if (!reader->stream)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' cannot be opened", path);
+        return weft_fail_reading(error, "open", path);
     if (fstat(fileno(reader->stream), &status) == 0 && S_ISREG(status.st_mode)) {
         reader->left = (uint64_t)status.st_size;
         return WEFT_OK;
@@ -24,7 +24,7 @@ weft_code weft_bonn_reader_open(const char *path, weft_bonn_reader *reader, weft
 weft_code weft_bonn_reader_expect(const weft_bonn_reader *reader, uint64_t bytes, weft_error *error)
 {
     if (bytes > reader->left)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' ends in its %s", reader->path, reader->section);
+        return weft_fail(error, WEFT_DAMAGED, "'%s' ends in its %s", reader->path, reader->section);
     return WEFT_OK;
 }
 

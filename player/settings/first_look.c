@@ -9,7 +9,7 @@
 /* Memory that is short is an error; what is wrong with a file, its reader will say. */
 static weft_code of_reading(weft_code code)
 {
-    return code == WEFT_SYSTEM ? code : WEFT_OK;
+    return weft_class_of(code) == WEFT_SYSTEM ? code : WEFT_OK;
 }
 
 static weft_code find_in_material(const char *path, bool *known, weft_measured *measured, weft_error *error)

@@ -175,7 +175,7 @@ static weft_code try_orientations(search *s, const weft_chart_sighting *sighting
             turned.corner[i][1] = from[1];
         }
         weft_code code = weft_chart_grid_of_corners(s->layout, &turned, &grid, error);
-        if (code == WEFT_SYSTEM)
+        if (weft_class_of(code) == WEFT_SYSTEM)
             return code;
         double agreement = code == WEFT_OK ? agreement_of(s, &grid) : 0;
         if (agreement > s->agreement) {

@@ -154,7 +154,7 @@ static weft_code read_photograph(const weft_board *board, weft_board_photograph 
 {
     weft_image image;
     weft_code code = weft_image_read(p->name, &image, NULL, error);
-    if (code == WEFT_BAD_INPUT && error) {
+    if (weft_class_of(code) == WEFT_BAD_INPUT && error) {
         weft_board_leave_out(p, "it cannot be read: %.150s", error->message);
         return WEFT_OK;
     }

@@ -65,7 +65,7 @@ static weft_code look_at(work *w, int index, look what, weft_error *error)
     weft_file_range range = weft_file_range_of(&p->exif, w->settings->clipped_at);
     weft_code code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->set->tone, range, &values, &own);
     free(path);
-    if (code == WEFT_BAD_INPUT) {
+    if (weft_class_of(code) == WEFT_BAD_INPUT) {
         snprintf(p->remark, sizeof p->remark, "%.180s", own.message);
         return WEFT_OK;
     }

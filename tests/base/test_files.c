@@ -133,7 +133,7 @@ static void impossible_places_are_named(void **state)
     assert_int_equal(weft_write_file("absent/", "x", 1, &error), WEFT_BAD_USAGE);
     char *bytes;
     size_t size;
-    assert_int_equal(weft_read_file("absent", 100, &bytes, &size, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_read_file("absent", 100, &bytes, &size, &error), WEFT_MISSING);
     assert_int_equal(weft_read_file(".", 100, &bytes, &size, &error), WEFT_BAD_INPUT);
     assert_int_equal(weft_write_file("long", many_bytes, 101, &error), WEFT_OK);
     assert_int_equal(weft_read_file("long", 100, &bytes, &size, &error), WEFT_BAD_INPUT);
@@ -201,14 +201,14 @@ static void bad_photographs_are_named(void **state)
     assert_int_equal(weft_photograph_write("q.tif", 64, 64, 12, samples, &error), WEFT_OK);
     assert_int_equal(weft_photograph_read("q.tif", 64, 63, 12, samples, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "64 x 64"));
-    assert_int_equal(weft_photograph_read("absent.tif", 64, 64, 12, samples, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_photograph_read("absent.tif", 64, 64, 12, samples, &error), WEFT_MISSING);
     assert_non_null(strstr(error.message, "absent.tif"));
     char *bytes;
     size_t size;
     assert_int_equal(weft_read_file("q.tif", 1 << 20, &bytes, &size, &error), WEFT_OK);
     for (size_t length = 0; length < size; length += size / 13) {
         assert_int_equal(weft_write_file("cut.tif", bytes, length, &error), WEFT_OK);
-        assert_int_equal(weft_photograph_read("cut.tif", 64, 64, 12, samples, &error), WEFT_BAD_INPUT);
+        assert_int_equal(weft_photograph_read("cut.tif", 64, 64, 12, samples, &error), WEFT_DAMAGED);
         assert_non_null(strstr(error.message, "cut.tif"));
     }
     free(bytes);

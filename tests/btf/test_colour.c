@@ -134,7 +134,7 @@ static void assert_refused(const char *text, const char *word)
     weft_colour colour;
     weft_error error = {0};
     scratch_store("bad.json", text, strlen(text));
-    assert_int_equal(weft_colour_read("bad.json", &colour, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_colour_read("bad.json", &colour, &error)), WEFT_BAD_INPUT);
     if (!strstr(error.message, word) || !strstr(error.message, "bad.json"))
         fail_msg("'%s' does not say '%s'", error.message, word);
 }

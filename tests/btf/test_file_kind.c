@@ -82,7 +82,7 @@ static void folders_are_sessions_and_the_rest_is_refused(void **state)
     write_bytes("poem.txt", "weaver of words", 15);
     assert_int_equal(weft_file_kind_of("poem.txt", &kind, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "poem.txt"));
-    assert_int_equal(weft_file_kind_of("there_is_none.weft", &kind, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_file_kind_of("there_is_none.weft", &kind, &error), WEFT_MISSING);
     assert_int_equal(weft_file_kind_of("/dev/null", &kind, &error), WEFT_BAD_INPUT);
 }
 

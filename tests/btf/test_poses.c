@@ -69,7 +69,7 @@ static void assert_refused(const char *from, const char *to, const char *said)
     assert_non_null(at);
     snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
     scratch_store("bad.poses.json", changed, strlen(changed));
-    assert_int_equal(weft_poses_read("bad.poses.json", &file, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_poses_read("bad.poses.json", &file, &error)), WEFT_BAD_INPUT);
     if (!strstr(error.message, said) || !strstr(error.message, "bad.poses.json"))
         fail_msg("'%s' does not say '%s'", error.message, said);
 }

@@ -105,7 +105,7 @@ static void a_bad_plan_file_is_refused_with_file_and_line(void **state)
     assert_refused("theta_light_deg,phi_light_deg,theta_view_deg\n10,0,45\n", "phi_view_deg");
     weft_plan plan;
     weft_error error = {0};
-    assert_int_equal(weft_plan_read("missing.csv", &plan, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_plan_read("missing.csv", &plan, &error)), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "missing.csv"));
 }
 

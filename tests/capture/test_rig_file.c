@@ -110,7 +110,7 @@ static void a_rig_that_is_missing_or_no_text_is_refused(void **state)
     (void)state;
     weft_rig_file rig;
     weft_error error = {0};
-    assert_int_equal(weft_rig_file_read("no-rig.conf", &rig, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_rig_file_read("no-rig.conf", &rig, &error)), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "no-rig.conf"));
     scratch_store("rig.conf", "\0\1\2", 3);
     assert_int_equal(weft_rig_file_read("rig.conf", &rig, &error), WEFT_BAD_INPUT);

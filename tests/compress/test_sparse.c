@@ -3,10 +3,10 @@
 
 #include "compress/compress.h"
 #include "compress/sparse/sparse.h"
-#include "import/import.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
+#include "weft/import.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -126,7 +126,7 @@ static void a_file_that_is_no_stitch_is_refused(void **state)
     (void)state;
     weft_stitch_sample *sample;
     weft_error error = {0};
-    assert_int_equal(weft_stitch_sample_read("absent.stitch", 3, &sample, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_stitch_sample_read("absent.stitch", 3, &sample, &error)), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "absent.stitch"));
     assert_null(sample);
 }

@@ -4,7 +4,7 @@
 
 #include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
-#include "import/import.h"
+#include "weft/import.h"
 
 /* A new empty folder in the working directory; `dataset` is where an import may go. */
 typedef struct test_folder {

@@ -41,7 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     weft_bonn_file file;
     weft_error error = {0};
     weft_code code = weft_bonn_file_open(fuzz_file(bytes, size), &file, &error);
-    if (code != WEFT_OK && (error.code != code || code != WEFT_BAD_INPUT || !error.message[0]))
+    if (code != WEFT_OK && (error.code != code || weft_class_of(code) != WEFT_BAD_INPUT || !error.message[0]))
         abort();
     if (code != WEFT_OK)
         return 0;

@@ -227,7 +227,7 @@ static void areas_that_divide_pixels_keep_the_mean(void **state)
 static void expect_refusal(const test_folder *folder, const char *name, const char *what)
 {
     weft_error error = {0};
-    assert_int_equal(folder_import(folder, NULL, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(folder_import(folder, NULL, &error)), WEFT_BAD_INPUT);
     if (!strstr(error.message, name) || !strstr(error.message, what))
         fail_msg("'%s' does not say %s and %s", error.message, name, what);
     assert_int_not_equal(access(folder->dataset, F_OK), 0);

@@ -1,8 +1,8 @@
 /* Files of Bonn: what the options do to them, and files that end too early. What they hold is the golden files' to say
  * (tests/golden/bonn.sh). */
 #include "import/bonn/file.h"
-#include "import/import.h"
 #include "tests/support/scratch_folder.h"
+#include "weft/import.h"
 
 #include "btf/direction/direction.h"
 
@@ -255,7 +255,9 @@ static void refuse_beginnings(const char *path)
         weft_import_report report;
         weft_error error = {0};
         scratch_store("cut.btf", bytes, kept);
-        assert_int_equal(weft_import("cut.btf", "out.btf.h5", &options, NULL, &report, &error), WEFT_BAD_INPUT);
+        weft_code code = weft_import("cut.btf", "out.btf.h5", &options, NULL, &report, &error);
+        assert_int_equal(weft_class_of(code), WEFT_BAD_INPUT);
+        assert_true(code == WEFT_DAMAGED || !strstr(error.message, " ends in its "));
         if (!strstr(error.message, "'cut.btf'"))
             fail_msg("%zu bytes: %s", kept, error.message);
     }

@@ -152,7 +152,7 @@ static void models_that_are_not_understood_are_refused(void **state)
     static const int models[] = {-1, 2, 6, 7, 8, 13, INT32_MAX, INT32_MIN};
     for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
         const weft_bonn_colour colour = colour_of(models[i]);
-        assert_int_equal(weft_bonn_colour_check(&colour, "file", NULL), WEFT_BAD_INPUT);
+        assert_int_equal(weft_class_of(weft_bonn_colour_check(&colour, "file", NULL)), WEFT_BAD_INPUT);
     }
 }
 

@@ -278,7 +278,7 @@ static void a_missing_or_binary_obj_is_bad_input(void **state)
     (void)state;
     weft_mesh mesh;
     weft_error error = {0};
-    assert_int_equal(weft_mesh_open("no-such.obj", &mesh, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_mesh_open("no-such.obj", &mesh, &error)), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "no-such.obj"));
     assert_int_equal(read_text("v 0 0 0\n\0f", 10, &mesh, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "zero byte"));

@@ -151,7 +151,7 @@ static void weaves_and_microcylinders_replace_each_other(void **state)
     f->settings.scene.pane[0] = WEFT_MODE_ANALYTIC;
     expect_picture(f);
     write_text("scene_load/bad.mc", "microcylinder {\n  sigmb = 1\n}\n");
-    assert_int_equal(drop(f, "scene_load/bad.mc", &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(drop(f, "scene_load/bad.mc", &error)), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "bad.mc:2:3: unknown key 'sigmb'"));
     assert_true(weft_player_has_threads(player));
     expect_ok(drop(f, WEFT_ASSETS "/weaves/cotton_twill.wv", &error), &error);
@@ -258,7 +258,7 @@ static void what_a_material_says_of_its_error_goes_with_it(void **state)
     const weft_hold_out *held_out = weft_scene_loader_held_out(f->loader);
     assert_non_null(held_out);
     assert_float_equal(held_out->material.all.relative_rmse, 0.2, 1e-9);
-    assert_int_equal(drop(f, "scene_load/corrupt.weft", &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(drop(f, "scene_load/corrupt.weft", &error)), WEFT_BAD_INPUT);
     assert_float_equal(weft_scene_loader_held_out(f->loader)->material.all.relative_rmse, 0.2, 1e-9);
     expect_ok(drop(f, "scene_load/tenth.weft", &error), &error);
     assert_float_equal(weft_scene_loader_held_out(f->loader)->material.all.relative_rmse, 0.1, 1e-9);
@@ -276,7 +276,7 @@ static void a_corrupt_file_leaves_what_was_shown(void **state)
     int before = texels_shown(f);
     static const char *const bad[] = {"scene_load/corrupt.weft", "scene_load/bad.obj", "scene_load/none.weft"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        assert_int_equal(drop(f, bad[i], &error), WEFT_BAD_INPUT);
+        assert_int_equal(weft_class_of(drop(f, bad[i], &error)), WEFT_BAD_INPUT);
         assert_non_null(strstr(error.message, bad[i]));
     }
     assert_int_equal(texels_shown(f), before);
@@ -302,7 +302,7 @@ static void a_file_may_arrive_while_another_fails(void **state)
             bool shown;
             usleep(20000);
             weft_code code = weft_scene_loader_poll(f->loader, &shown, note, &error);
-            both |= shown && code == WEFT_BAD_INPUT;
+            both |= shown && weft_class_of(code) == WEFT_BAD_INPUT;
         }
     }
     assert_true(both);
@@ -318,7 +318,7 @@ static void files_that_cannot_be_shown_are_refused(void **state)
     fixture *f = open_scene("scene_load/a.weft", NULL);
     expect_ok(finish(f, &error), &error);
     assert_int_equal(drop(f, WEFT_ASSETS "/stitches/plain_knit.stitch", &error), WEFT_BAD_INPUT);
-    assert_int_equal(drop(f, "scene_load", &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(drop(f, "scene_load", &error)), WEFT_BAD_INPUT);
     close_scene(f);
 }
 

@@ -187,7 +187,7 @@ static void what_cannot_be_read_is_told_once_and_leaves_nothing(void **state)
     weft_weave_edit edit = edit_of(player, NULL);
     weft_error error = {0};
     edit.revision = 0;
-    assert_int_equal(weft_weave_edit_follow(&edit, player, "no-such.wv", &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_weave_edit_follow(&edit, player, "no-such.wv", &error)), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "no-such.wv"));
     expect_ok(weft_weave_edit_follow(&edit, player, "no-such.wv", &error), &error);
     assert_int_equal(edit.weave.yarn_count, 0);

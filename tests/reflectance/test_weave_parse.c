@@ -244,7 +244,7 @@ static void files_that_are_no_weaves_are_refused(void **state)
     (void)state;
     weft_weave weave;
     weft_error error = {0};
-    assert_int_equal(weft_weave_read("no/such.wv", NULL, 0, &weave, NULL, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_class_of(weft_weave_read("no/such.wv", NULL, 0, &weave, NULL, &error)), WEFT_BAD_INPUT);
     assert_string_equal(error.message, "cannot read 'no/such.wv': No such file or directory");
     FILE *file = fopen("zero.wv", "wb");
     assert_non_null(file);

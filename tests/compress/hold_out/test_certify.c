@@ -6,8 +6,8 @@
 #include "compress/hold_out/certify.h"
 #include "compress/hold_out/hold_out.h"
 #include "evaluate/error/coverage.h"
-#include "import/import.h"
 #include "tests/support/scratch_folder.h"
+#include "weft/import.h"
 
 #include <math.h>
 #include <stdlib.h>

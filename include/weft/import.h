@@ -7,21 +7,24 @@
  *   - a folder with an .lp file: one view, many lamps (far light and camera);
  *   - a binary BTF file of the University of Bonn (UBO2014): all images as products of matrices (far light and camera).
  */
-#ifndef WEFT_IMPORT_IMPORT_H
-#define WEFT_IMPORT_IMPORT_H
+#ifndef WEFT_IMPORT_H
+#define WEFT_IMPORT_H
 
-#include "base/progress.h"
-#include "base/text/lines.h"
-#include "btf/dataset/dataset.h"
+#include "weft/dataset.h"
+#include "weft/progress.h"
 
 #include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 enum { WEFT_VALUES_OF_SOURCE = 2 };
 
 /* What the numbers in photographs mean. */
 typedef enum weft_import_colours {
     WEFT_IMPORT_AS_SAID, /* by each file itself, else sRGB */
-    WEFT_IMPORT_SRGB,    /* from here on in the order of weft_known_colours (base/picture/colour_space.h) */
+    WEFT_IMPORT_SRGB,
     WEFT_IMPORT_GAMMA_22,
     WEFT_IMPORT_ADOBE_RGB,
     WEFT_IMPORT_DISPLAY_P3,
@@ -37,15 +40,14 @@ typedef struct weft_import_options {
      * those of a near light always give reflectance times cosine. */
     int values;
     weft_import_colours colours;
-    double white; /* linear value of a perfect white diffuser in the photographs */
-    bool linear;  /* integer images hold linear values, whatever their colours */
-    const char
-        *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
+    double white;       /* linear value of a perfect white diffuser in the photographs */
+    bool linear;        /* integer images hold linear values, whatever their colours */
+    const char *lights; /* an .lp file for photographs of one view; NULL: as the folder says */
     /* Mask photographs that cannot be used, and leave out duplicates, instead of failing. */
     bool skip_bad;
 } weft_import_options;
 
-/* What came of it. Freed with weft_import_report_free. */
+/* What came of it; freed with weft_import_report_free. */
 typedef struct weft_import_report {
     const char *kind; /* of collection, in words */
     int width, height, image_count, view_count;
@@ -57,8 +59,8 @@ typedef struct weft_import_report {
     weft_lines notes;          /* what the user should know, a line each */
 } weft_import_report;
 
-/* Size as photographed, saturated from 250/255, reflectance times cosine, white 1, no bad photograph skipped. */
-weft_import_options weft_import_defaults(void);
+/* Size as photographed, saturated from 250/255, reflectance times cosine, white 1, no bad photograph skipped. Pure. */
+WEFT_API weft_import_options weft_import_defaults(void);
 
 /* Reads the collection in the folder or file `source` and writes the dataset `output` atomically. Photographs are
  * decoded in parallel (OpenMP); memory holds one photograph a thread. Of a file of Bonn it holds the matrices, and up
@@ -70,9 +72,14 @@ weft_import_options weft_import_defaults(void);
  * intensity I at distance d gives reflectance times cosine = pi p d^2 / I for a linear pixel value p = BRDF cos(theta)
  * I / d^2.
  *
- * Errors: WEFT_BAD_INPUT naming the photograph or the table that cannot be used; WEFT_SYSTEM from writing. */
-weft_code weft_import(const char *source, const char *output, const weft_import_options *options,
-                      const weft_progress *progress, weft_import_report *report, weft_error *error);
-void weft_import_report_free(weft_import_report *report);
+ * `progress` may be NULL. One thread at a time may read or write datasets. The caller frees `report`, which may not be
+ * NULL, where all went well. Errors: WEFT_BAD_INPUT naming the photograph or the table that cannot be used,
+ * WEFT_MISSING where there is none, WEFT_NOT_SUPPORTED for a BTF file of Bonn of another kind; WEFT_SYSTEM. */
+WEFT_API weft_code weft_import(const char *source, const char *output, const weft_import_options *options,
+                               const weft_progress *progress, weft_import_report *report, weft_error *error);
+WEFT_API void weft_import_report_free(weft_import_report *report);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
