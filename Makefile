@@ -26,16 +26,16 @@ program: packages
 	cmake --build --preset release --target weft
 
 install: program
-	cmake --build --preset release --target manual
+	cmake --build --preset release --target manual weft_shared weft_static
 	cmake --install $(build) --prefix $(PREFIX)
 
 # What the last `make install` from here has put there, with the same DESTDIR.
 uninstall:
 	while read -r file || [ -n "$$file" ]; do rm -f "$(DESTDIR)$$file"; done <$(build)/install_manifest.txt
 
-# build/release/weft.deb
+# build/release/weft.deb, libweft0.deb, libweft-dev.deb, python3-weft.deb
 package: program
-	cmake --build --preset release --target manual
+	cmake --build --preset release --target manual weft_shared weft_static
 	cpack --config $(build)/CPackConfig.cmake
 
 packages:
