@@ -193,13 +193,8 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
     say_coverage(common, comparison);
     weft_command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,
                      comparison->half_float_bytes / comparison->material_bytes);
-    if (comparison->left_out.count > 0)
-        weft_command_say(
-            common, "leave one out: relative RMSE %.2f %%, median relative error %.2f %% (means of %d photographs)",
-            100 * comparison->left_out.mean_relative_rmse, 100 * comparison->left_out.mean_median_relative,
-            comparison->left_out.count);
     /* Interpolated, a handful of photographs is no picture to be compared with. */
-    if (comparison->left_out.count == 0)
+    if (!comparison->has_few_images)
         say_scene(common, &comparison->scenes);
     if (!comparison->scenes.drawn)
         weft_command_say(common, "no pictures of scenes: %s", comparison->scenes.why_not);
@@ -234,9 +229,7 @@ const weft_command weft_command_compare = {
     .documentation =
         "Example: weft compare silk.btf.h5 silk.weft --weave silk.wv --fit -o report/\n\n"
         "Writes one HTML page: dataset, material, analytic cloth and BARD side by side, their errors against "
-        "the dataset, of every sample and of the mean BRDF, slices of the mean BRDF, sizes and times. A "
-        "dataset of fewer than 30 images is also fitted with each image left out, and the fit predicts that "
-        "image.",
+        "the dataset, of every sample and of the mean BRDF, slices of the mean BRDF, sizes and times.",
     .options = option_table,
     .needs = "a dataset, a material and -o REPORT/",
     .surplus = "a dataset and a material",

@@ -121,8 +121,7 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     if (options->bard)
         WEFT_TRY(measure_texture(files->dataset, files->bard, NULL, "BARD", progress, comparison, error));
     WEFT_TRY(measure_means(options, files, progress, comparison, error));
-    if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
-        WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
+    comparison->has_few_images = layout->image_count < WEFT_COMPARE_FEW_IMAGES;
     WEFT_TRY(draw_scenes(options, files, progress, comparison, error));
     const weft_traced_request truth = {.dataset = files->dataset,
                                        .material = &files->material,
@@ -143,7 +142,6 @@ static weft_code fill_page(weft_page *page, const weft_dataset_layout *layout, c
     WEFT_TRY(weft_page_slices(page, &comparison->slices, error));
     WEFT_TRY(weft_page_scenes(page, &comparison->scenes, error));
     WEFT_TRY(weft_page_truth(page, &comparison->truth, error));
-    WEFT_TRY(weft_page_left_out(page, &comparison->left_out, error));
     WEFT_TRY(weft_page_pairs(page, layout, comparison, error));
     return weft_page_numbers(page, layout, material, comparison, error);
 }
@@ -222,7 +220,6 @@ void weft_comparison_free(weft_comparison *comparison)
     for (int i = 0; i < comparison->model_count; i++)
         weft_measurement_free(&comparison->model[i].texture);
     weft_slices_free(&comparison->slices);
-    weft_leave_one_out_free(&comparison->left_out);
     weft_scenes_free(&comparison->scenes);
     weft_traced_truth_free(&comparison->truth);
 }

@@ -15,31 +15,6 @@
 #include "player/draw/player.h"
 #include "reflectance/microcylinder/file.h"
 
-/* ---- Leave one out ---- */
-
-/* How well a fit predicts a photograph it has not seen. */
-
-/* One photograph, predicted by a material fitted to all the others. */
-typedef struct weft_left_out {
-    weft_image_pair pair;
-    char name[64];            /* of the photograph's file, else "image N" */
-    weft_error_summary error; /* over all channels of its valid samples */
-} weft_left_out;
-
-/* Freed with weft_leave_one_out_free. */
-typedef struct weft_leave_one_out {
-    int count, capacity;
-    weft_left_out *photograph; /* [capacity], the first `count` in use: those with any valid sample */
-    double mean_relative_rmse, mean_median_relative; /* of the photographs */
-    double seconds;                                  /* of all fits together */
-} weft_leave_one_out;
-
-/* Fits a material to all images but one, for each in turn, and compares its prediction with that image. The fits use
- * the defaults of weft_compress, without mip levels. Errors: those of reading and fitting. */
-weft_code weft_leave_one_out_measure(weft_dataset *dataset, const weft_progress *progress, weft_leave_one_out *result,
-                                     weft_error *error);
-void weft_leave_one_out_free(weft_leave_one_out *result);
-
 /* ---- Scenes ---- */
 
 /* The same scenes drawn from the dataset, the material and the analytic cloth. */
@@ -103,8 +78,8 @@ typedef struct weft_compare_options {
 
 enum { WEFT_COMPARE_PICTURE_SIDE = 400 };
 
-/* A dataset of fewer images than these is also fitted with each of them left out. */
-enum { WEFT_LEAVE_ONE_OUT_LIMIT = 30 };
+/* Of a dataset of fewer images than these, interpolated, pictures of a scene are nothing to measure by. */
+enum { WEFT_COMPARE_FEW_IMAGES = 30 };
 
 /* A model against the data. */
 typedef struct weft_compared_model {
@@ -124,7 +99,7 @@ typedef struct weft_comparison {
     weft_weave_layout weave_layout;                      /* of it on the material */
     bool weave_on_yarns;                                 /* laid by the tiles that a fit found */
     weft_slices slices;
-    weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
+    bool has_few_images; /* of WEFT_COMPARE_FEW_IMAGES */
     bool has_held_out;
     weft_hold_out held_out; /* what the material says of its error where it was not fitted, if it does */
     double dataset_bytes, half_float_bytes, material_bytes;

@@ -118,7 +118,6 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
     expect_error(&comparison.model[0].texture.by_view[2], &ring);
     assert_int_equal(comparison.model[0].texture.by_view[4].count, 0);
     assert_int_equal(comparison.model[0].texture.saturated, 1);
-    assert_int_equal(comparison.left_out.count, 0);
     char *page = read_page("compare-report/index.html"), row[128];
     const weft_error_summary *m = &comparison.model[0].texture.all;
     snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td>", m->count,
@@ -306,27 +305,6 @@ static weft_rgb black(int x, int y)
     return (weft_rgb){0, 0, 0};
 }
 
-static void a_matt_plane_is_predicted_from_the_other_photographs(void **state)
-{
-    (void)state;
-    fixture_near_dataset("compare.btf.h5", 4, 6, matt);
-    fixture_diffuse_material("compare.weft", 4, 4, black);
-    const weft_compare_options options = {
-        .dataset = "compare.btf.h5", .material = "compare.weft", .folder = "compare-report"};
-    weft_comparison comparison;
-    weft_error error = {0};
-    expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
-    assert_int_equal(comparison.left_out.count, 6);
-    assert_true(comparison.left_out.mean_relative_rmse < 0.05);
-    assert_true(comparison.left_out.mean_median_relative < 0.05);
-    assert_float_equal(comparison.model[0].texture.all.relative_rmse, 1, 1e-6);
-    double mean = 0;
-    for (int i = 0; i < 6; i++)
-        mean += comparison.left_out.photograph[i].error.relative_rmse / 6;
-    assert_float_equal(comparison.left_out.mean_relative_rmse, mean, 1e-12);
-    weft_comparison_free(&comparison);
-}
-
 static void a_material_of_another_size_is_refused(void **state)
 {
     (void)state;
@@ -355,7 +333,6 @@ int test_compare(void)
         cmocka_unit_test(a_fitted_weave_lies_with_its_yarns_on_those_of_the_data),
         cmocka_unit_test(microcylinder_cloth_is_compared_as_it_is),
         cmocka_unit_test(a_prediction_of_another_dataset_is_refused_before_work),
-        cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),
     };
     if (suite_argument && strcmp(suite_argument, "drawn") == 0)

@@ -24,7 +24,7 @@ static void print_held_out(weft_page *page, const weft_hold_out *held_out)
 static bool measures_drape(const weft_comparison *comparison)
 {
     const weft_error_summary *e = &comparison->scenes.scene[0].error[WEFT_MODE_COMPRESSED];
-    return comparison->scenes.drawn && e->count > 0 && isfinite(e->psnr_db) && comparison->left_out.count == 0;
+    return comparison->scenes.drawn && e->count > 0 && isfinite(e->psnr_db) && !comparison->has_few_images;
 }
 
 /* What a reader of pictures asks first: the first scene, a drape. */
@@ -72,12 +72,6 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
     weft_page_tile(page, "median relative error, fitted samples, level 0", "%.2f %%", 100 * all->median_relative);
     weft_page_tile(page, "half floats : material", "%.1f : 1",
                    comparison->half_float_bytes / comparison->material_bytes);
-    if (comparison->left_out.count > 0) {
-        weft_page_tile(page, "relative RMSE, photographs left out", "%.2f %%",
-                       100 * comparison->left_out.mean_relative_rmse);
-        weft_page_tile(page, "median relative error, photographs left out", "%.2f %%",
-                       100 * comparison->left_out.mean_median_relative);
-    }
     fputs("</div>\n", page->html);
     explain_tiles(page, comparison);
 }

@@ -24,25 +24,6 @@ static weft_code put_picture(weft_page *page, const char *name, const char *what
     return code;
 }
 
-weft_code weft_page_pair(weft_page *page, const char *name, const weft_image_pair *pair, const char *caption,
-                         weft_error *error)
-{
-    double exposure;
-    WEFT_TRY(weft_picture_exposure(&pair->sample, pair->mask, &exposure, error));
-    fputs("<h3>", page->html);
-    weft_page_text(page, caption);
-    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row even\">\n", exposure);
-    weft_image picture;
-    WEFT_TRY(weft_picture_encode(&pair->sample, pair->mask, exposure, &picture, error));
-    WEFT_TRY(put_picture(page, name, "sample", &picture, "photograph", error));
-    WEFT_TRY(weft_picture_encode(&pair->prediction, NULL, exposure, &picture, error));
-    WEFT_TRY(put_picture(page, name, "prediction", &picture, "prediction", error));
-    WEFT_TRY(weft_picture_difference(&pair->sample, &pair->prediction, pair->mask, exposure, &picture, error));
-    WEFT_TRY(put_picture(page, name, "difference", &picture, "prediction minus photograph", error));
-    fputs("</div>\n", page->html);
-    return WEFT_OK;
-}
-
 /* The colours of differences, as the pictures have them. */
 static void put_scale(weft_page *page)
 {
@@ -157,41 +138,4 @@ int weft_representative_images(const weft_dataset_layout *layout, int image[WEFT
         count += nearest < INFINITY;
     }
     return count;
-}
-
-/* ---- Left out ---- */
-
-static void print_table(weft_page *page, const weft_leave_one_out *left_out)
-{
-    fputs("<table>", page->html);
-    weft_page_columns(page, "photograph left out|values|relative RMSE|median relative");
-    for (int i = 0; i < left_out->count; i++) {
-        const weft_left_out *photograph = &left_out->photograph[i];
-        fputs("<tr><td>", page->html);
-        weft_page_text(page, photograph->name);
-        fprintf(page->html, "</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", photograph->error.count,
-                100 * photograph->error.relative_rmse, 100 * photograph->error.median_relative);
-    }
-    fprintf(page->html, "<tr><th scope=\"row\">mean</th><td></td><td>%.2f %%</td><td>%.2f %%</td></tr></table>\n",
-            100 * left_out->mean_relative_rmse, 100 * left_out->mean_median_relative);
-}
-
-weft_code weft_page_left_out(weft_page *page, const weft_leave_one_out *left_out, weft_error *error)
-{
-    if (left_out->count == 0)
-        return WEFT_OK;
-    fprintf(page->html,
-            "<h2>Leave one out</h2>\n<p class=\"note\">Each photograph predicted by a fit to the %d others, over its "
-            "valid samples and all channels. All fits together took %.1f s.</p>\n",
-            left_out->count - 1, left_out->seconds);
-    print_table(page, left_out);
-    for (int i = 0; i < left_out->count; i++) {
-        const weft_left_out *photograph = &left_out->photograph[i];
-        char name[32], caption[160];
-        snprintf(name, sizeof name, "left-out-%d", i);
-        snprintf(caption, sizeof caption, "%s left out: relative RMSE %.2f %%, median relative %.2f %%",
-                 photograph->name, 100 * photograph->error.relative_rmse, 100 * photograph->error.median_relative);
-        WEFT_TRY(weft_page_pair(page, name, &photograph->pair, caption, error));
-    }
-    return WEFT_OK;
 }

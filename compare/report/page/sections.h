@@ -43,11 +43,4 @@ weft_code weft_page_truth(weft_page *page, const weft_traced_truth *truth, weft_
 weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison,
                           weft_error *error);
 
-/* Photograph, prediction and difference of every photograph left out, and the table of their errors. */
-weft_code weft_page_left_out(weft_page *page, const weft_leave_one_out *left_out, weft_error *error);
-
-/* One row: sample, prediction, difference under one exposure. `name` begins the names of the files. */
-weft_code weft_page_pair(weft_page *page, const char *name, const weft_image_pair *pair, const char *caption,
-                         weft_error *error);
-
 #endif
