@@ -9,7 +9,7 @@
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
-#include "player/texture/fetches.h"
+#include "bench/fetches.h"
 #include "reflectance/lafortune/lafortune.h"
 
 #include <math.h>

@@ -4,10 +4,8 @@
 
 #include <math.h>
 
-/* How often, and how many frames along a side of the grid within a pixel: few and many. */
-typedef struct frame_series {
-    int tries, few, many;
-} frame_series;
+/* Frames along a side of the grid within a pixel: few and many. */
+enum { TRIES = 3, FEW = 1, MANY = 3 };
 
 static weft_code time_picture(weft_player *player, const weft_scene *scene, int width, int height, int samples,
                               double *least_ms, weft_error *error)
@@ -20,26 +18,14 @@ static weft_code time_picture(weft_player *player, const weft_scene *scene, int 
     return WEFT_OK;
 }
 
-static weft_code measure(weft_player *player, const weft_scene *scene, int width, int height, frame_series series,
-                         double *frame_ms, weft_error *error)
-{
-    double few_ms = INFINITY, many_ms = INFINITY;
-    for (int i = 0; i < series.tries; i++) {
-        WEFT_TRY(time_picture(player, scene, width, height, series.few, &few_ms, error));
-        WEFT_TRY(time_picture(player, scene, width, height, series.many, &many_ms, error));
-    }
-    *frame_ms = fmax(many_ms - few_ms, 0) / (series.many * series.many - series.few * series.few);
-    return WEFT_OK;
-}
-
 weft_code weft_frame_time_measure(weft_player *player, const weft_scene *scene, int width, int height, double *frame_ms,
                                   weft_error *error)
 {
-    return measure(player, scene, width, height, (frame_series){3, 1, 3}, frame_ms, error);
-}
-
-weft_code weft_frame_time_measure_once(weft_player *player, const weft_scene *scene, int width, int height,
-                                       double *frame_ms, weft_error *error)
-{
-    return measure(player, scene, width, height, (frame_series){1, 1, 2}, frame_ms, error);
+    double few_ms = INFINITY, many_ms = INFINITY;
+    for (int i = 0; i < TRIES; i++) {
+        WEFT_TRY(time_picture(player, scene, width, height, FEW, &few_ms, error));
+        WEFT_TRY(time_picture(player, scene, width, height, MANY, &many_ms, error));
+    }
+    *frame_ms = fmax(many_ms - few_ms, 0) / (MANY * MANY - FEW * FEW);
+    return WEFT_OK;
 }

@@ -10,8 +10,4 @@
 weft_code weft_frame_time_measure(weft_player *player, const weft_scene *scene, int width, int height, double *frame_ms,
                                   weft_error *error);
 
-/* The same of fewer frames and one try, for pictures that take long. */
-weft_code weft_frame_time_measure_once(weft_player *player, const weft_scene *scene, int width, int height,
-                                       double *frame_ms, weft_error *error);
-
 #endif

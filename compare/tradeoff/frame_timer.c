@@ -7,12 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { FRAME_WIDTH = 730, FRAME_HEIGHT = 400, LARGE_WIDTH = 1920, LARGE_HEIGHT = 1080 };
+enum { FRAME_WIDTH = 730, FRAME_HEIGHT = 400 };
 
 struct weft_frame_timer {
     weft_headless *headless;
     weft_player *player;
-    weft_scene scene; /* that was timed last */
     char why_not[WEFT_MESSAGE_SIZE], renderer[128];
 };
 
@@ -74,14 +73,13 @@ const char *weft_frame_timer_renderer(const weft_frame_timer *timer)
 static weft_code time_frame(weft_frame_timer *timer, weft_mode mode, bool through_heights, double *frame_ms,
                             weft_error *error)
 {
-    weft_scene *scene = &timer->scene;
-    *scene = weft_scene_default();
-    scene->pane_count = 1;
-    scene->pane[0] = mode;
-    scene->labels = false;
-    scene->relief = through_heights;
-    scene->filter = WEFT_FILTER_EXACT;
-    return weft_frame_time_measure(timer->player, scene, FRAME_WIDTH, FRAME_HEIGHT, frame_ms, error);
+    weft_scene scene = weft_scene_default();
+    scene.pane_count = 1;
+    scene.pane[0] = mode;
+    scene.labels = false;
+    scene.relief = through_heights;
+    scene.filter = WEFT_FILTER_EXACT;
+    return weft_frame_time_measure(timer->player, &scene, FRAME_WIDTH, FRAME_HEIGHT, frame_ms, error);
 }
 
 weft_code weft_frame_timer_of_material(weft_frame_timer *timer, const weft_material *material, double *frame_ms,
@@ -121,12 +119,4 @@ weft_code weft_frame_timer_of_cloth(weft_frame_timer *timer, const weft_weave *w
         WEFT_TRY(weft_player_set_threads(timer->player, threads, error));
     }
     return time_frame(timer, WEFT_MODE_ANALYTIC, false, frame_ms, error);
-}
-
-weft_code weft_frame_timer_again_large(weft_frame_timer *timer, double *frame_ms, weft_error *error)
-{
-    *frame_ms = 0;
-    if (!timer->player)
-        return WEFT_OK;
-    return weft_frame_time_measure_once(timer->player, &timer->scene, LARGE_WIDTH, LARGE_HEIGHT, frame_ms, error);
 }

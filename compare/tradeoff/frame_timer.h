@@ -35,7 +35,4 @@ weft_code weft_frame_timer_of_dataset(weft_frame_timer *timer, weft_dataset *dat
 weft_code weft_frame_timer_of_cloth(weft_frame_timer *timer, const weft_weave *weave,
                                     const weft_microcylinder_cloth *threads, double *frame_ms, weft_error *error);
 
-/* What was timed last, in 1920 x 1080 pixels, by a single try; 0 where nothing is drawn. Errors: those of drawing. */
-weft_code weft_frame_timer_again_large(weft_frame_timer *timer, double *frame_ms, weft_error *error);
-
 #endif

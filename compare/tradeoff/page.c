@@ -224,10 +224,7 @@ static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
     put_number(page, "%.3f", price->flicker, price->has_flicker);
     put_number(page, "%.1f", price->fit_s, is_fitted);
     put_number(page, "%.1f", price->frame_ms, price->frame_ms > 0);
-    put_number(page, "%.1f", price->large_frame_ms, price->large_frame_ms > 0);
     put_number(page, "%.0f", price->evaluations_a_second, price->evaluations_a_second > 0);
-    put_number(page, "%.0f", price->fetches.reads, price->fetches.reads > 0);
-    put_number(page, "%.0f", price->fetches.bytes, price->fetches.bytes > 0);
     put_number(page, price->bits_a_texel < 1000 ? "%.1f" : "%.0f", price->bits_a_texel, true);
     fprintf(page->html, "<td>%d</td><td class=\"text\"><code>%s</code></td></tr>\n", price->photograph_count,
             row->model.arguments);
@@ -236,19 +233,17 @@ static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
 static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
 {
     fputs("<h2 id=\"prices\">Prices</h2>\n<table class=\"long\">\n", page->html);
-    weft_page_columns(
-        page, "|:model|bytes|error, not fitted|fitted|95 % interval|median|80th "
-              "percentile|grazing|highlights|shadows|PSNR dB|"
-              "SSIM|FLIP|flicker|fit, s|ms a frame|ms at 1080p|evaluations/s|reads a pixel|bytes a pixel|bits a texel|"
-              "photographs|:weft compress");
+    weft_page_columns(page, "|:model|bytes|error, not fitted|fitted|95 % interval|median|80th "
+                            "percentile|grazing|highlights|shadows|PSNR dB|"
+                            "SSIM|FLIP|flicker|fit, s|ms a frame|evaluations/s|bits a texel|"
+                            "photographs|:weft compress");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
     fputs(
         "</table>\n"
         "<p class=\"note\">A row without options of <code>weft compress</code> is for comparison: fewer photographs "
-        "stand for a shorter capture. Evaluations: BRDFs at random places and directions, on one thread. Reads and "
-        "bytes: of textures, for a pixel under one light, with all texels that the hardware interpolates; through "
-        "heights, along the longest sight line. Grazing: view or light is 52.5\u00b0 or more from the normal. "
+        "stand for a shorter capture. Evaluations: BRDFs at random places and directions, on one thread. "
+        "Grazing: view or light is 52.5\u00b0 or more from the normal. "
         "Highlights: the brightest twentieth of the samples of each texel. Shadows: the darkest fifth; their error is "
         "relative to the little light there is. These errors, and PSNR, SSIM and FLIP of pictures, are of photographs "
         "that were not fitted; each texel is a pixel. 95 % interval: the mean width of the interval that holds 95 % of "

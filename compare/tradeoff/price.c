@@ -209,13 +209,11 @@ static weft_code price_material(weft_price_shop *shop, const weft_material *mate
     price->bytes = weft_weight_scaled(&weight, layout->width, layout->height, material->level_count > 1);
     price->bits_a_texel = 8 * price->bytes / ((double)layout->width * layout->height);
     price->fit_s = shop->fit_s / shop->share;
-    price->fetches = weft_fetches_of_material(material);
     WEFT_TRY(weft_material_write(shop->material_path, material, error));
     weft_code code = evaluate(shop->material_path, true, price, error);
     unlink(shop->material_path);
     WEFT_TRY(code);
-    WEFT_TRY(weft_frame_timer_of_material(shop->timer, material, &price->frame_ms, error));
-    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
+    return weft_frame_timer_of_material(shop->timer, material, &price->frame_ms, error);
 }
 
 /* That of the whole dataset, which a block of it does not have: it is the larger part of the metadata. */
@@ -230,11 +228,9 @@ static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_pri
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
     price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * layout->image_count;
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
-    price->fetches = weft_fetches_of_raw(through_heights);
     WEFT_TRY(evaluate(weft_dataset_path(shop->dataset), through_heights, price, error));
-    WEFT_TRY(weft_frame_timer_of_dataset(shop->timer, shop->block, through_heights, shop->progress, &price->frame_ms,
-                                         error));
-    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
+    return weft_frame_timer_of_dataset(shop->timer, shop->block, through_heights, shop->progress, &price->frame_ms,
+                                       error);
 }
 
 /* Its photographs as half floats. */
@@ -260,9 +256,8 @@ static weft_code price_opened_cloth(weft_price_shop *shop, const char *given, we
     weft_code code = evaluate(path, false, price, error);
     unlink(shop->material_path);
     WEFT_TRY(code);
-    WEFT_TRY(weft_frame_timer_of_cloth(shop->timer, cloth->is_threads ? NULL : &cloth->weave, &cloth->threads.cloth,
-                                       &price->frame_ms, error));
-    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
+    return weft_frame_timer_of_cloth(shop->timer, cloth->is_threads ? NULL : &cloth->weave, &cloth->threads.cloth,
+                                     &price->frame_ms, error);
 }
 
 static weft_code price_cloth(weft_price_shop *shop, const char *given, weft_price *price, weft_error *error)

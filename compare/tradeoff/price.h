@@ -4,7 +4,6 @@
 
 #include "base/progress.h"
 #include "compare/tradeoff/priced_model.h"
-#include "player/texture/fetches.h"
 
 typedef struct weft_price {
     int photograph_count;        /* that it is made of */
@@ -13,8 +12,6 @@ typedef struct weft_price {
     double fit_s;                /* of the whole dataset */
     double evaluations_a_second; /* of one thread: BRDFs at places and directions drawn at random */
     double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD, which nothing plays */
-    double large_frame_ms;       /* 1920 x 1080 pixels */
-    weft_fetches fetches;        /* of a pixel; 0 for BARD and microcylinder cloth */
     bool has_flicker;            /* of BARD there is none */
     double flicker;              /* compare/tradeoff/flicker.h */
 } weft_price;

@@ -68,17 +68,13 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
     const weft_held_error *m = &row->measured;
     char presets[64];
     weft_tradeoff_print_presets(row, presets, sizeof presets);
-    json_t *object =
-        json_pack("{s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:i, s:i, s:s, s:b}", "model", row->model.name, "family",
-                  weft_priced_family_name(row->model.family), "options", row->model.arguments, "photographs",
-                  price->photograph_count, "bytes", price->bytes, "bits_a_texel", price->bits_a_texel, "fit_seconds",
-                  price->fit_s, "evaluations_a_second", price->evaluations_a_second, "texture_reads_a_pixel",
-                  price->fetches.reads, "fetched_bytes_a_pixel", price->fetches.bytes, "preset", presets, "beaten",
-                  row->is_beaten);
+    json_t *object = json_pack("{s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:s, s:b}", "model", row->model.name, "family",
+                               weft_priced_family_name(row->model.family), "options", row->model.arguments,
+                               "photographs", price->photograph_count, "bytes", price->bytes, "bits_a_texel",
+                               price->bits_a_texel, "fit_seconds", price->fit_s, "evaluations_a_second",
+                               price->evaluations_a_second, "preset", presets, "beaten", row->is_beaten);
     if (price->frame_ms > 0)
         weft_json_put(&object, "frame_ms", json_real(price->frame_ms));
-    if (price->large_frame_ms > 0)
-        weft_json_put(&object, "frame_1080p_ms", json_real(price->large_frame_ms));
     if (price->has_flicker)
         weft_json_put(&object, "flicker", json_real(price->flicker));
     weft_json_put(&object, "not_fitted", json_of_errors(m->held));
@@ -96,13 +92,6 @@ static void print_word(const char *text, FILE *table)
 {
     for (; *text; text++)
         fputc(*text == ',' ? ';' : *text, table);
-    fputc(',', table);
-}
-
-static void print_known(double value, bool is_known, FILE *table)
-{
-    if (is_known)
-        fprintf(table, "%.4g", value);
     fputc(',', table);
 }
 
@@ -126,9 +115,8 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
     print_word(presets, table);
     fprintf(table, "%d,%.0f,%.4g,%.4g,%.4g,", price->photograph_count, price->bytes, price->bits_a_texel, price->fit_s,
             price->evaluations_a_second);
-    print_known(price->frame_ms, price->frame_ms > 0, table);
-    print_known(price->large_frame_ms, price->large_frame_ms > 0, table);
-    fprintf(table, "%d,%d", price->fetches.reads, price->fetches.bytes);
+    if (price->frame_ms > 0)
+        fprintf(table, "%.4g", price->frame_ms);
     for (int i = 0; i < 2 * WEFT_SAMPLE_KINDS; i++) {
         const weft_error_summary *e = i < WEFT_SAMPLE_KINDS ? &m->held[i] : &m->fitted[i - WEFT_SAMPLE_KINDS];
         fprintf(table, ",%.5g,%.5g,%.5g", e->relative_rmse, e->median_relative, e->percentile80_relative);
@@ -144,10 +132,7 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
 
 static void print_table(const weft_tradeoff *tradeoff, FILE *table)
 {
-    fputs("model,family,options,presets,photographs,bytes,bits_a_texel,fit_s,evaluations_a_second,frame_ms,frame_1080p_"
-          "ms,"
-          "texture_reads_a_pixel,fetched_bytes_a_pixel",
-          table);
+    fputs("model,family,options,presets,photographs,bytes,bits_a_texel,fit_s,evaluations_a_second,frame_ms", table);
     for (int i = 0; i < 2 * WEFT_SAMPLE_KINDS; i++) {
         const char *of = i < WEFT_SAMPLE_KINDS ? "not_fitted" : "fitted";
         const char *kind = weft_sample_kind_name((weft_sample_kind)(i % WEFT_SAMPLE_KINDS));

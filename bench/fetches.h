@@ -1,7 +1,7 @@
 /* What a pixel fetches from a material, under one light and with neighbouring texels, levels and directions all
  * evaluated (WEFT_FILTER_EXACT). */
-#ifndef WEFT_PLAYER_TEXTURE_FETCHES_H
-#define WEFT_PLAYER_TEXTURE_FETCHES_H
+#ifndef WEFT_BENCH_FETCHES_H
+#define WEFT_BENCH_FETCHES_H
 
 #include "btf/material/material.h"
 
@@ -13,8 +13,5 @@ typedef struct weft_fetches {
 /* Of a material: of its components where it has some, through its heights where it has those, else of lobes and tables.
  * Pure. */
 weft_fetches weft_fetches_of_material(const weft_material *material);
-
-/* Of a dataset in mode raw, as half floats. Pure. */
-weft_fetches weft_fetches_of_raw(bool through_heights);
 
 #endif

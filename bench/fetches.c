@@ -1,4 +1,4 @@
-#include "player/texture/fetches.h"
+#include "bench/fetches.h"
 
 #include "reflectance/relief/relief.h"
 
@@ -52,12 +52,4 @@ weft_fetches weft_fetches_of_material(const weft_material *material)
     if (!material->components)
         return of_lobes(material);
     return material->heights ? of_components_through_heights(material) : of_components(material);
-}
-
-/* Three lights of each of three views (player/draw/shaders/raw.glsl). */
-weft_fetches weft_fetches_of_raw(bool through_heights)
-{
-    int reads = CORNERS * CORNERS * LEVELS;
-    weft_fetches fetches = through_heights ? of_march() : (weft_fetches){0};
-    return (weft_fetches){fetches.reads + reads, fetches.bytes + reads * BILINEAR * 3 * (int)sizeof(weft_half)};
 }
