@@ -1,10 +1,10 @@
 /* Whether what a preset of weft compress predicts is what it measures afterwards: `bench_prediction NAME.btf.h5
  * PRESET...`. Prints predicted and measured bytes of the file, metadata and all, and the error on directions that are
  * not fitted. */
+#include "compare/tradeoff/prediction.h"
 #include "bench/measure.h"
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
-#include "compare/tradeoff/preset.h"
 #include "compress/compress.h"
 #include "compress/hold_out/hold_out.h"
 

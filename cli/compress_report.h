@@ -4,7 +4,7 @@
 
 #include "cli/command/arguments.h"
 #include "compare/tradeoff/component_count.h"
-#include "compare/tradeoff/preset.h"
+#include "compare/tradeoff/prediction.h"
 #include "compress/compress.h"
 #include "compress/hold_out/hold_out.h"
 

@@ -1,5 +1,5 @@
+#include "cli/command/arguments.h"
 #include "cli/command/command.h"
-#include "cli/command/complete.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -2,7 +2,6 @@
 
 #include "btf/file_kind.h"
 #include "btf/material/certificate.h"
-#include "evaluate/raw_btf.h"
 #include "reflectance/components/components.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "reflectance/microcylinder/file.h"

@@ -4,6 +4,7 @@
 
 #include "base/progress.h"
 #include "base/text/csv.h"
+#include "btf/dataset/dataset.h"
 #include "reflectance/weave/weave.h"
 #include "weft/evaluate.h"
 
@@ -43,5 +44,31 @@ bool weft_model_has_interval(const weft_model *model);
  * places; WEFT_SYSTEM where `output` cannot be written. */
 weft_code weft_model_evaluate_table(weft_model *model, const weft_csv *table, const weft_progress *progress,
                                     FILE *output, weft_error *error);
+
+/* ---- Raw BTF ---- */
+
+/* A dataset as a function: its samples interpolated between the measured lights and views. */
+
+typedef struct weft_raw_btf weft_raw_btf;
+
+/* `dataset` stays the caller's and must outlive the result, which the caller frees with weft_raw_btf_free.
+ * Errors: WEFT_SYSTEM for memory. */
+weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft_error *error);
+void weft_raw_btf_free(weft_raw_btf *raw);
+
+/* From now on without the heights of the dataset. */
+void weft_raw_btf_flatten(weft_raw_btf *raw);
+
+/* BRDF in 1/sr at texture coordinates (u, v), repeated: bilinear between texels; in a texel barycentric between the
+ * three nearest views and, within each, between its three nearest lights (btf/direction/triangulation.h). Samples are
+ * divided by the cosine of their own light before they are interpolated, so that a diffuse texel stays constant. Masked
+ * samples take no part: the weights of the others are scaled up; NaN where none is left. 0 where light or view is below
+ * the horizon. Not thread-safe. */
+weft_code weft_raw_btf_sample(weft_raw_btf *raw, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view,
+                              weft_rgb *brdf, weft_error *error);
+
+/* The same for the mean of all texels, each image over its valid samples; directions of a near dataset are those at its
+ * centre. The first call reads the whole dataset. */
+weft_code weft_raw_btf_mean(weft_raw_btf *raw, weft_vec3 light, weft_vec3 view, weft_rgb *brdf, weft_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "evaluate/raw_btf.h"
+#include "evaluate/model.h"
 
 #include "btf/dataset/dataset.h"
 #include "evaluate/raw_directions.h"

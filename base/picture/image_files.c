@@ -1,5 +1,4 @@
 #include "base/picture/image_library.h"
-#include "base/picture/png.h"
 
 #include <stddef.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "base/picture/png.h"
+#include "base/picture/image_library.h"
 
 #include "base/atomic_file.h"
 

@@ -20,4 +20,14 @@ weft_code weft_argument_check_type(const char *argument, const char *path, weft_
 typedef void weft_arguments_visit(void *context, const weft_option *option, const weft_setting *setting);
 void weft_arguments_each(const weft_command *command, weft_arguments_visit *visit, void *context);
 
+/* ---- Completion ---- */
+
+/* What the shells ask when a user presses Tab. */
+
+/* `weft --complete WORD...`: prints what the last word, which may be empty, may become after those before it. A line
+ * holds a candidate, a tab and what it means. The line ":file" stands for the names of files, those that end with
+ * what follows its tab; the line ":folder" for folders. The shell may cut "--name=value" into three words. Returns the
+ * exit code, which is 0. */
+int weft_complete(int count, char **word);
+
 #endif

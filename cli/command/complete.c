@@ -1,4 +1,3 @@
-#include "cli/command/complete.h"
 #include "cli/command/arguments.h"
 
 #include <ctype.h>

@@ -141,7 +141,7 @@ typedef struct weft_source_span {
 
 /* Draws queries: a texel of the dataset, asked at its centre, and independently a light and a view, evenly in solid
  * angle within the span. The exact samples that s is made of are those of the cloth in the directions of the dataset,
- * which raw BTF would take (evaluate/raw_btf.h). The same for any number of threads. answer [queries->count]
+ * which raw BTF would take (evaluate/model.h). The same for any number of threads. answer [queries->count]
  * receives span->asked - span->unseen answers. Errors: WEFT_BAD_INPUT where a file cannot be read or the dataset is
  * near; those of reading; WEFT_SYSTEM. */
 weft_code weft_source_answers(const weft_source_stages *stages, const weft_source_queries *queries,

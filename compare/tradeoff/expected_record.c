@@ -1,4 +1,4 @@
-#include "compare/tradeoff/expected_record.h"
+#include "compare/tradeoff/prediction.h"
 
 #include "base/integers.h"
 #include "compress/hold_out/certify.h"

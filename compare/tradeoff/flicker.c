@@ -1,4 +1,4 @@
-#include "compare/tradeoff/flicker.h"
+#include "compare/tradeoff/tradeoff.h"
 
 #include "btf/direction/direction.h"
 

@@ -2,7 +2,6 @@
 
 #include "base/integers.h"
 #include "compare/tradeoff/cloth.h"
-#include "compare/tradeoff/held_pictures.h"
 #include "compress/bard/predict.h"
 #include "compress/compress.h"
 #include "compress/hold_out/certify.h"
@@ -134,11 +133,10 @@ static weft_code make_masks(const weft_held_bench *bench, const weft_priced_mode
     size_t images = (size_t)bench->excerpt.layout.image_count;
     const uint8_t *held = weft_splits_held(&bench->splits, split);
     const uint8_t *next = weft_splits_held(&bench->splits, (split + 1) % bench->splits.count);
-    int taken;
     *masks = (split_masks){malloc(images), malloc(images), malloc(images)};
     if (!masks->left_out || !masks->unseen || !masks->next)
         return weft_fail_memory(error, "images", 3 * images);
-    WEFT_TRY(weft_photographs_leave_out(&bench->excerpt.layout, model->photographs, masks->left_out, &taken, error));
+    weft_photographs_leave_out(&bench->excerpt.layout, model->photographs, masks->left_out);
     for (size_t i = 0; i < images; i++) {
         masks->unseen[i] = held[i] || masks->left_out[i];
         masks->next[i] = masks->left_out[i] ? 0 : next[i];
@@ -399,9 +397,8 @@ static weft_code take_answer(const weft_held_bench *bench, int split, const weft
 {
     WEFT_TRY(append(&all->held, &answer->held, error));
     WEFT_TRY(append(&all->fitted, &answer->fitted, error));
-    return bench->has_pictures && split == 0
-               ? weft_held_pictures_compare(trial, &answer->held, bench->kinds, measured, error)
-               : WEFT_OK;
+    return bench->has_pictures && split == 0 ? weft_held_pictures_compare(trial, &answer->held, measured, error)
+                                             : WEFT_OK;
 }
 
 static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *model, int split, said *all,

@@ -5,19 +5,40 @@
 #include "base/picture/image.h"
 #include "compare/pictures/picture_quality.h"
 #include "compare/tradeoff/priced_model.h"
-#include "compare/tradeoff/sample_kind.h"
 #include "compare/tradeoff/weight.h"
+#include "compress/hold_out/excerpt.h"
 #include "compress/hold_out/split.h"
 #include "compress/hold_out/trial.h"
 
+/* ---- Kinds of samples ---- */
+
+/* Samples of an excerpt told apart where eyes look. */
+
+/* Which samples. A texel's brightness in an image is the mean of its channels, divided by the cosine of the light where
+ * the dataset holds that. */
+typedef enum weft_sample_kind {
+    WEFT_SAMPLES_ALL,
+    WEFT_SAMPLES_GRAZING,    /* view or light 52.5 degrees or more from the normal: the ring of 60 degrees or beyond */
+    WEFT_SAMPLES_HIGHLIGHTS, /* the brightest twentieth of each texel over all images */
+    WEFT_SAMPLES_SHADOWS,    /* the darkest fifth */
+    WEFT_SAMPLE_KINDS
+} weft_sample_kind;
+
+/* "all", "grazing", "highlights", "shadows". Pure. */
+const char *weft_sample_kind_name(weft_sample_kind kind);
+
+/* Of every sample the bits 1 << weft_sample_kind: *kinds [texel][image], which the caller frees, also on failure.
+ * Errors: WEFT_SYSTEM for memory. */
+weft_code weft_sample_kinds_mark(const weft_excerpt *excerpt, uint8_t **kinds, weft_error *error);
+
 typedef struct weft_held_error {
     weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];
-    double interval_width; /* mean width of the interval of 95 % (compress/hold_out/certify.h) that these samples
-                              give, in units of the mean sample; 0 where all is black */
-    int picture_count;     /* of held-out images whose texels are neighbours */
-    weft_picture_quality quality[WEFT_SAMPLE_KINDS]; /* means over the pixels of these, each shown as its photograph
-                                                        needs; PSNR: of the pictures' decibels, weighted by pixels */
-    long picture_pixels[WEFT_SAMPLE_KINDS];          /* of these; 0: nothing is known of the kind */
+    double interval_width;        /* mean width of the interval of 95 % (compress/hold_out/certify.h) that these samples
+                                     give, in units of the mean sample; 0 where all is black */
+    int picture_count;            /* of held-out images whose texels are neighbours */
+    weft_picture_quality quality; /* means over their pixels, each picture shown as its photograph needs; PSNR: of the
+                                     pictures' decibels, weighted by pixels */
+    long picture_pixels;          /* of these */
     double fit_s;
     weft_weight weight;           /* of the fit without what is held out */
     int worst_image;              /* the picture with the largest relative RMSE */
@@ -60,5 +81,25 @@ weft_code weft_held_bench_picture(weft_held_bench *bench, const weft_priced_mode
  * masked. */
 weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
                                   weft_error *error);
+
+/* ---- Pictures ---- */
+
+/* Held-out images beside what a model makes of them, as pictures. */
+
+enum { WEFT_HELD_PICTURES = 64 };
+
+/* Of the images with the most reasons to be held out all, or WEFT_HELD_PICTURES of them, evenly, in their order: sets
+ * image and returns how many. Reads the held-out images of the trial and their flags alone. Pure. */
+int weft_held_pictures_choose(const weft_trial *trial, int image[WEFT_HELD_PICTURES]);
+
+/* Lets the trial ask for these images alone, and for no fitted ones; weft_held_pictures_choose chooses the same again.
+ */
+void weft_held_pictures_keep(weft_trial *trial);
+
+/* Compares some images that a trial holds out, of those with the most reasons to be, with what is said of them, under
+ * the exposure that the photograph needs. Masked texels are black in both and do not count. Sets the pictures and their
+ * quality in `measured`. Errors: WEFT_SYSTEM. */
+weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, weft_held_error *measured,
+                                     weft_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "compare/tradeoff/held_pictures.h"
+#include "compare/tradeoff/held_error.h"
 
 #include "compare/pictures/sample_picture.h"
 #include "evaluate/error/image_pair.h"
@@ -68,56 +68,40 @@ static void fill(const weft_trial *trial, const weft_asked_samples *said, weft_i
     }
 }
 
-/* The kinds of the pixels; none of those that are masked. The caller frees the result; NULL where memory is short. */
-static uint8_t *kinds_of_pixels(const weft_trial *trial, const uint8_t *kinds, const weft_image_pair *pair)
-{
-    const weft_dataset_layout *layout = &trial->excerpt->layout;
-    const weft_texel_block *block = &trial->asked;
-    int count = block->width * block->height;
-    uint8_t *result = malloc((size_t)count);
-    for (int i = 0; result && i < count; i++) {
-        int x = block->x + i % block->width, y = block->y + i / block->width;
-        size_t texel = (size_t)y * (size_t)layout->width + (size_t)x;
-        uint8_t kind = kinds[texel * (size_t)layout->image_count + (size_t)pair->image];
-        result[i] = pair->mask[i] ? 0 : kind;
-    }
-    return result;
-}
-
-/* Into the mean over pixels. */
-static void take_quality(const weft_picture_quality *one, long pixels, weft_picture_quality *mean, long *taken)
-{
-    *taken += pixels;
-    if (pixels == 0)
-        return;
-    double share = (double)pixels / (double)*taken;
-    mean->psnr_db += share * (fmin(one->psnr_db, largest_psnr_db) - mean->psnr_db);
-    mean->ssim += share * (one->ssim - mean->ssim);
-    mean->flip += share * (one->flip - mean->flip);
-}
-
-static weft_code measure_quality(const weft_image *sample, const weft_image *predicted, const uint8_t *kinds,
+/* Of the pixels that are not masked, into the mean over all pictures. */
+static weft_code measure_quality(const weft_image *sample, const weft_image *predicted, const weft_image_pair *pair,
                                  weft_held_error *measured, weft_error *error)
 {
-    weft_picture_quality quality[WEFT_SAMPLE_KINDS];
-    long pixels[WEFT_SAMPLE_KINDS];
-    WEFT_TRY(weft_picture_quality_by_region(sample, predicted, kinds, WEFT_SAMPLE_KINDS, quality, pixels, error));
-    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
-        take_quality(&quality[kind], pixels[kind], &measured->quality[kind], &measured->picture_pixels[kind]);
+    size_t count = (size_t)sample->width * (size_t)sample->height;
+    weft_picture_quality one, *mean = &measured->quality;
+    long pixels;
+    uint8_t *known = malloc(count);
+    if (!known)
+        return weft_fail_memory(error, "pictures", count);
+    for (size_t i = 0; i < count; i++)
+        known[i] = pair->mask[i] == 0;
+    weft_code code = weft_picture_quality_by_region(sample, predicted, known, 1, &one, &pixels, error);
+    free(known);
+    WEFT_TRY(code);
     measured->picture_count++;
+    measured->picture_pixels += pixels;
+    double share = pixels > 0 ? (double)pixels / (double)measured->picture_pixels : 0;
+    mean->psnr_db += share * (fmin(one.psnr_db, largest_psnr_db) - mean->psnr_db);
+    mean->ssim += share * (one.ssim - mean->ssim);
+    mean->flip += share * (one.flip - mean->flip);
     return WEFT_OK;
 }
 
 /* The pictures become those of `measured` where they are to be kept. */
-static weft_code compare_shown(const weft_image_pair *pair, const uint8_t *kinds, double exposure, bool keep,
-                               weft_held_error *measured, weft_error *error)
+static weft_code compare_shown(const weft_image_pair *pair, double exposure, bool keep, weft_held_error *measured,
+                               weft_error *error)
 {
     weft_image sample = {0}, predicted = {0};
     weft_code code = weft_picture_encode(&pair->sample, NULL, exposure, &sample, error);
     if (code == WEFT_OK)
         code = weft_picture_encode(&pair->prediction, NULL, exposure, &predicted, error);
     if (code == WEFT_OK)
-        code = measure_quality(&sample, &predicted, kinds, measured, error);
+        code = measure_quality(&sample, &predicted, pair, measured, error);
     if (code == WEFT_OK && keep) {
         weft_image_free(&measured->sample);
         weft_image_free(&measured->predicted);
@@ -131,10 +115,9 @@ static weft_code compare_shown(const weft_image_pair *pair, const uint8_t *kinds
     return code;
 }
 
-static weft_code compare_image(const weft_trial *trial, const weft_asked_samples *said, const uint8_t *kinds, int image,
-                               double *worst, weft_held_error *measured, weft_error *error)
+static weft_code compare_image(const weft_trial *trial, const weft_asked_samples *said, int image, double *worst,
+                               weft_held_error *measured, weft_error *error)
 {
-    uint8_t *kinds_shown = NULL;
     weft_image_pair pair;
     weft_error_summary summary;
     double exposure;
@@ -146,28 +129,23 @@ static weft_code compare_image(const weft_trial *trial, const weft_asked_samples
         fill(trial, said, &pair);
         code = weft_image_pair_error(&pair, &summary, error);
     }
-    if (code == WEFT_OK) {
-        kinds_shown = kinds_of_pixels(trial, kinds, &pair);
-        code = kinds_shown ? WEFT_OK : weft_fail_memory(error, "pictures", (size_t)shown.width * (size_t)shown.height);
-    }
     if (code == WEFT_OK)
         code = weft_picture_exposure(&pair.sample, pair.mask, &exposure, error);
     if (code == WEFT_OK && summary.count > 0) {
         bool is_worst = summary.relative_rmse > *worst;
         *worst = is_worst ? summary.relative_rmse : *worst;
-        code = compare_shown(&pair, kinds_shown, exposure, is_worst, measured, error);
+        code = compare_shown(&pair, exposure, is_worst, measured, error);
     }
     weft_image_pair_free(&pair);
-    free(kinds_shown);
     return code;
 }
 
-weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, const uint8_t *kinds,
-                                     weft_held_error *measured, weft_error *error)
+weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, weft_held_error *measured,
+                                     weft_error *error)
 {
     int image[WEFT_HELD_PICTURES], count = weft_held_pictures_choose(trial, image);
     double worst = -1;
     for (int i = 0; i < count; i++)
-        WEFT_TRY(compare_image(trial, said, kinds, image[i], &worst, measured, error));
+        WEFT_TRY(compare_image(trial, said, image[i], &worst, measured, error));
     return WEFT_OK;
 }

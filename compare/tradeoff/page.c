@@ -198,9 +198,9 @@ static void put_errors(weft_page *page, const weft_held_error *m)
     put_number(page, "%.1f %%", 100 * all->percentile80_relative, true);
     for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++)
         put_number(page, "%.2f %%", 100 * m->held[kind].relative_rmse, m->held[kind].count > 0);
-    put_number(page, "%.2f", m->quality[0].psnr_db, m->picture_count > 0);
-    put_number(page, "%.4f", m->quality[0].ssim, m->picture_count > 0);
-    put_number(page, "%.4f", m->quality[0].flip, m->picture_count > 0);
+    put_number(page, "%.2f", m->quality.psnr_db, m->picture_count > 0);
+    put_number(page, "%.4f", m->quality.ssim, m->picture_count > 0);
+    put_number(page, "%.4f", m->quality.flip, m->picture_count > 0);
 }
 
 static void put_name(weft_page *page, const weft_tradeoff_row *row, int number)
@@ -255,48 +255,6 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
 
 /* ---- Pictures ---- */
 
-static void put_qualities(weft_page *page, const weft_tradeoff_row *row, int number)
-{
-    const weft_held_error *m = &row->measured;
-    fprintf(page->html, "<tr><td>%d</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td>", number, number,
-            row->model.name);
-    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
-        put_number(page, "%.2f", m->quality[kind].psnr_db, m->picture_pixels[kind] > 0);
-    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
-        put_number(page, "%.4f", m->quality[kind].ssim, m->picture_pixels[kind] > 0);
-    for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
-        put_number(page, "%.4f", m->quality[kind].flip, m->picture_pixels[kind] > 0);
-    fputs("</tr>\n", page->html);
-}
-
-static int most_pictures(const weft_tradeoff *tradeoff)
-{
-    int most = 0;
-    for (int i = 0; i < tradeoff->row_count; i++) {
-        int count = tradeoff->row[i].measured.picture_count;
-        most = count > most ? count : most;
-    }
-    return most;
-}
-
-static void put_picture_table(weft_page *page, const weft_tradeoff *tradeoff)
-{
-    int pictures = most_pictures(tradeoff);
-    if (pictures == 0)
-        return;
-    fputs("<h2 id=\"looks\">How similar pictures look</h2>\n<table class=\"long\">\n", page->html);
-    weft_page_columns(page, "|:model|PSNR dB|PSNR, grazing|PSNR, highlights|PSNR, shadows|SSIM|SSIM, grazing|"
-                            "SSIM, highlights|SSIM, shadows|FLIP|FLIP, grazing|FLIP, highlights|FLIP, shadows");
-    for (int i = 0; i < tradeoff->row_count; i++)
-        put_qualities(page, &tradeoff->row[i], i + 1);
-    fprintf(page->html,
-            "</table>\n<p class=\"note\">Up to %d held-out photographs beside their predictions: all pixels, and those "
-            "of grazing "
-            "directions, highlights and shadows as above. The windows of SSIM and FLIP may reach beyond these pixels. "
-            "Equal pictures have SSIM 1 and FLIP 0.</p>\n",
-            pictures);
-}
-
 static weft_code put_pictures_of(weft_page *page, const weft_tradeoff_row *row, int number, weft_error *error)
 {
     char name[NAME], caption[NAME + 96];
@@ -338,7 +296,6 @@ weft_code weft_tradeoff_write_page(const weft_tradeoff *tradeoff, const char *da
     put_summary(&page, tradeoff);
     put_charts(&page, tradeoff);
     put_table(&page, tradeoff);
-    put_picture_table(&page, tradeoff);
     weft_code code = put_pictures(&page, tradeoff, error);
     if (code == WEFT_OK)
         return weft_page_finish(&page, error);

@@ -4,7 +4,6 @@
 #include "base/text/json_text.h"
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
-#include "compare/tradeoff/expected_record.h"
 #include "compare/tradeoff/weight.h"
 #include "compress/compress.h"
 #include "compress/hold_out/excerpt.h"

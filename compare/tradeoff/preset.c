@@ -1,4 +1,4 @@
-#include "compare/tradeoff/preset.h"
+#include "compare/tradeoff/prediction.h"
 
 #include "compare/tradeoff/frame_timer.h"
 #include "compare/tradeoff/held_error.h"

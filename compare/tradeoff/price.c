@@ -1,11 +1,10 @@
-#include "compare/tradeoff/price.h"
+#include "compare/tradeoff/tradeoff.h"
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
 #include "btf/direction/direction.h"
 #include "btf/material/metadata.h"
 #include "compare/tradeoff/cloth.h"
-#include "compare/tradeoff/flicker.h"
 #include "compare/tradeoff/frame_timer.h"
 #include "compare/tradeoff/weight.h"
 #include "compress/bard/predict.h"
@@ -296,9 +295,8 @@ weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, 
     if (!left_out)
         return weft_fail_memory(error, "images", (size_t)layout->image_count);
     *price = (weft_price){0};
-    weft_code code = weft_photographs_leave_out(layout, model->photographs, left_out, &price->photograph_count, error);
-    if (code == WEFT_OK)
-        code = price_model(shop, model, left_out, price, error);
+    price->photograph_count = weft_photographs_leave_out(layout, model->photographs, left_out);
+    weft_code code = price_model(shop, model, left_out, price, error);
     free(left_out);
     return code;
 }

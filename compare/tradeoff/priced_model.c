@@ -11,7 +11,7 @@
 
 /* BARD is offered where so many views were photographed under the light along the normal: then none of these lights is
  * held out (compress/hold_out/split.h). */
-enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_COMPONENTS = 4, MAPS_COMPARED = 16 };
+enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_COMPONENTS = 4 };
 
 /* Of the images this share at least is left where a tenth of the views and a tenth of the lights are held out. */
 static const double least_share = 0.8;
@@ -83,20 +83,6 @@ static void add_components_seen(model_list *list, const weft_compress_options *o
     add(list, WEFT_PRICED_COMPONENTS, options, 5, name, arguments);
 }
 
-/* The kinds of maps that components choose between, of a grid. */
-static void add_kinds_of_maps(model_list *list, int components)
-{
-    static const char *const over[] = {"the light", "the half vector"};
-    weft_compress_options options = components_alone(list, components);
-    options.heights = false;
-    for (int kind = 0; kind < 2 && !weft_images_are_scattered(list->layout, NULL); kind++) {
-        char name[WEFT_PRICED_NAME];
-        options.component_maps = kind == 0 ? WEFT_COMPONENT_MAPS_OF_LIGHT : WEFT_COMPONENT_MAPS_OF_HALF_VECTOR;
-        snprintf(name, sizeof name, "%d components over %s", components, over[kind]);
-        add(list, WEFT_PRICED_COMPONENTS, &options, 5, name, "");
-    }
-}
-
 /* Where there are heights, without them and then through them. */
 static void add_components(model_list *list)
 {
@@ -107,7 +93,6 @@ static void add_components(model_list *list)
             add_components_seen(list, &without, ", without heights");
         add_components_seen(list, &options, list->dataset->has_surface ? ", through heights" : "");
     }
-    add_kinds_of_maps(list, MAPS_COMPARED);
 }
 
 static void add_subset(model_list *list, weft_photographs_taken taken, const char *what)
@@ -129,8 +114,6 @@ static void add_subsets(model_list *list)
         return;
     add_subset(list, WEFT_PHOTOGRAPHS_SECOND_RINGS, "every second ring");
     add_subset(list, WEFT_PHOTOGRAPHS_THIRD_RINGS, "every third ring");
-    add_subset(list, WEFT_PHOTOGRAPHS_41_VIEWS, "41 views");
-    add_subset(list, WEFT_PHOTOGRAPHS_21_VIEWS, "21 views");
 }
 
 static void add_alone(model_list *list, weft_priced_family family, const char *name)
@@ -205,69 +188,25 @@ bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_pri
 {
     const weft_compress_options *a = &model->options, *b = &other->options;
     return weft_priced_model_is_fit(model) && weft_priced_model_is_fit(other) && a->lobe_count == b->lobe_count &&
-           a->component_count == b->component_count && a->component_maps == b->component_maps &&
-           model->photographs == other->photographs;
+           a->component_count == b->component_count && model->photographs == other->photographs;
 }
 
 /* ---- Fewer photographs ---- */
 
-static bool is_of_rings(weft_vec3 direction, int every)
+static bool is_of_rings(weft_vec3 direction, weft_photographs_taken every)
 {
-    return weft_ubo81_ring(weft_angles_of_direction(direction).theta_rad) % every == 0;
+    return every == WEFT_PHOTOGRAPHS_ALL ||
+           weft_ubo81_ring(weft_angles_of_direction(direction).theta_rad) % (int)every == 0;
 }
 
-static weft_vec3 view_at_centre(const weft_dataset_layout *layout, int view)
+int weft_photographs_leave_out(const weft_dataset_layout *layout, weft_photographs_taken taken, uint8_t *left_out)
 {
-    return weft_dataset_view_direction(layout, view, layout->width / 2, layout->height / 2);
-}
-
-/* The view that is farthest from all that are taken; first the one nearest to the normal. */
-static int farthest_view(const weft_dataset_layout *layout, const uint8_t *is_taken, int taken)
-{
-    int farthest = 0;
-    weft_real least = 3;
-    for (int view = 0; view < layout->view_count; view++) {
-        weft_vec3 at = view_at_centre(layout, view);
-        weft_real nearest = taken == 0 ? -at.z : -1;
-        for (int other = 0; other < layout->view_count; other++) {
-            if (is_taken[other])
-                nearest = fmax(nearest, weft_dot(at, view_at_centre(layout, other)));
-        }
-        if (!is_taken[view] && nearest < least) {
-            farthest = view;
-            least = nearest;
-        }
-    }
-    return farthest;
-}
-
-static weft_code take_views(const weft_dataset_layout *layout, int count, uint8_t *left_out, weft_error *error)
-{
-    uint8_t *is_taken = calloc((size_t)layout->view_count, 1);
-    if (!is_taken)
-        return weft_fail_memory(error, "views", (size_t)layout->view_count);
-    for (int taken = 0; taken < count && taken < layout->view_count; taken++)
-        is_taken[farthest_view(layout, is_taken, taken)] = 1;
-    for (int i = 0; i < layout->image_count; i++)
-        left_out[i] = !is_taken[layout->view_of_image[i]];
-    free(is_taken);
-    return WEFT_OK;
-}
-
-weft_code weft_photographs_leave_out(const weft_dataset_layout *layout, weft_photographs_taken taken, uint8_t *left_out,
-                                     int *taken_count, weft_error *error)
-{
-    memset(left_out, 0, (size_t)layout->image_count);
-    if (taken == WEFT_PHOTOGRAPHS_41_VIEWS || taken == WEFT_PHOTOGRAPHS_21_VIEWS)
-        WEFT_TRY(take_views(layout, taken == WEFT_PHOTOGRAPHS_41_VIEWS ? 41 : 21, left_out, error));
-    int x = layout->width / 2, y = layout->height / 2;
-    int every = taken == WEFT_PHOTOGRAPHS_SECOND_RINGS ? 2 : taken == WEFT_PHOTOGRAPHS_THIRD_RINGS ? 3 : 0;
-    *taken_count = 0;
+    int x = layout->width / 2, y = layout->height / 2, count = 0;
     for (int i = 0; i < layout->image_count; i++) {
-        if (every > 0)
-            left_out[i] = !is_of_rings(weft_dataset_light_direction(layout, i, x, y), every) ||
-                          !is_of_rings(view_at_centre(layout, layout->view_of_image[i]), every);
-        *taken_count += !left_out[i];
+        weft_vec3 light = weft_dataset_light_direction(layout, i, x, y);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[i], x, y);
+        left_out[i] = !is_of_rings(light, taken) || !is_of_rings(view, taken);
+        count += !left_out[i];
     }
-    return WEFT_OK;
+    return count;
 }

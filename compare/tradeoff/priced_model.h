@@ -16,13 +16,11 @@ typedef enum weft_priced_family {
     WEFT_PRICED_FAMILIES
 } weft_priced_family;
 
-/* What is taken of the photographs. */
+/* Which rings of views and lights are taken. */
 typedef enum weft_photographs_taken {
     WEFT_PHOTOGRAPHS_ALL,
-    WEFT_PHOTOGRAPHS_SECOND_RINGS, /* of views and lights: 0, 30 and 60 degrees of ubo81 */
-    WEFT_PHOTOGRAPHS_THIRD_RINGS,  /* 0 and 45 degrees */
-    WEFT_PHOTOGRAPHS_41_VIEWS,     /* spread evenly */
-    WEFT_PHOTOGRAPHS_21_VIEWS
+    WEFT_PHOTOGRAPHS_SECOND_RINGS = 2, /* 0, 30 and 60 degrees of ubo81 */
+    WEFT_PHOTOGRAPHS_THIRD_RINGS = 3   /* 0 and 45 degrees */
 } weft_photographs_taken;
 
 typedef struct weft_priced_model {
@@ -65,9 +63,9 @@ bool weft_priced_model_is_of_lobes(const weft_priced_model *model);
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);
 
-/* Marks the images that are not taken with 1 in left_out [image_count], others with 0; *taken_count receives how many
- * are taken. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_photographs_leave_out(const weft_dataset_layout *layout, weft_photographs_taken taken, uint8_t *left_out,
-                                     int *taken_count, weft_error *error);
+/* Marks the images that are not taken with 1 in left_out [image_count], others with 0; returns how many are taken.
+ * Pure.
+ */
+int weft_photographs_leave_out(const weft_dataset_layout *layout, weft_photographs_taken taken, uint8_t *left_out);
 
 #endif

@@ -1,4 +1,4 @@
-#include "compare/tradeoff/sample_kind.h"
+#include "compare/tradeoff/held_error.h"
 
 #include "base/numeric/statistics.h"
 

@@ -48,20 +48,6 @@ static json_t *json_of_errors(const weft_error_summary error[WEFT_SAMPLE_KINDS])
     return object;
 }
 
-static json_t *json_of_pictures(const weft_held_error *m)
-{
-    json_t *object = json_pack("{s:i, s:f, s:f, s:f}", "pictures", m->picture_count, "psnr_db", m->quality[0].psnr_db,
-                               "ssim", m->quality[0].ssim, "flip", m->quality[0].flip);
-    for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++) {
-        const weft_picture_quality *quality = &m->quality[kind];
-        if (m->picture_pixels[kind] > 0)
-            weft_json_put(&object, weft_sample_kind_name((weft_sample_kind)kind),
-                          json_pack("{s:f, s:f, s:f, s:I}", "psnr_db", quality->psnr_db, "ssim", quality->ssim, "flip",
-                                    quality->flip, "pixels", (json_int_t)m->picture_pixels[kind]));
-    }
-    return object;
-}
-
 json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
 {
     const weft_price *price = &row->price;
@@ -81,7 +67,9 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
     weft_json_put(&object, "fitted", json_of_errors(m->fitted));
     weft_json_put(&object, "interval_width", json_real(m->interval_width));
     if (m->picture_count > 0)
-        weft_json_put(&object, "pictures_not_fitted", json_of_pictures(m));
+        weft_json_put(&object, "pictures_not_fitted",
+                      json_pack("{s:i, s:f, s:f, s:f}", "pictures", m->picture_count, "psnr_db", m->quality.psnr_db,
+                                "ssim", m->quality.ssim, "flip", m->quality.flip));
     return object;
 }
 
@@ -93,14 +81,6 @@ static void print_word(const char *text, FILE *table)
     for (; *text; text++)
         fputc(*text == ',' ? ';' : *text, table);
     fputc(',', table);
-}
-
-static void print_quality(const weft_picture_quality *quality, bool is_known, FILE *table)
-{
-    if (is_known)
-        fprintf(table, ",%.5g,%.5g,%.5g", quality->psnr_db, quality->ssim, quality->flip);
-    else
-        fputs(",,,", table);
 }
 
 static void print_row(const weft_tradeoff_row *row, FILE *table)
@@ -121,12 +101,9 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
         const weft_error_summary *e = i < WEFT_SAMPLE_KINDS ? &m->held[i] : &m->fitted[i - WEFT_SAMPLE_KINDS];
         fprintf(table, ",%.5g,%.5g,%.5g", e->relative_rmse, e->median_relative, e->percentile80_relative);
     }
-    fprintf(table, ",%.5g,%.5g,%.5g,%.5g,", m->quality[0].psnr_db, m->quality[0].ssim, m->quality[0].flip,
-            m->interval_width);
+    fprintf(table, ",%.5g,%.5g,%.5g,%.5g,", m->quality.psnr_db, m->quality.ssim, m->quality.flip, m->interval_width);
     if (price->has_flicker)
         fprintf(table, "%.4g", price->flicker);
-    for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++)
-        print_quality(&m->quality[kind], m->picture_pixels[kind] > 0, table);
     fputc('\n', table);
 }
 
@@ -139,10 +116,6 @@ static void print_table(const weft_tradeoff *tradeoff, FILE *table)
         fprintf(table, ",%s_%s_relative_rmse,%s_%s_median,%s_%s_percentile80", of, kind, of, kind, of, kind);
     }
     fputs(",psnr_db,ssim,flip,interval_width,flicker", table);
-    for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++) {
-        const char *name = weft_sample_kind_name((weft_sample_kind)kind);
-        fprintf(table, ",%s_psnr_db,%s_ssim,%s_flip", name, name, name);
-    }
     fputc('\n', table);
     for (int i = 0; i < tradeoff->row_count; i++)
         print_row(&tradeoff->row[i], table);

@@ -3,11 +3,54 @@
 #ifndef WEFT_COMPARE_TRADEOFF_TRADEOFF_H
 #define WEFT_COMPARE_TRADEOFF_TRADEOFF_H
 
+#include "base/progress.h"
 #include "compare/tradeoff/choice.h"
 #include "compare/tradeoff/held_error.h"
-#include "compare/tradeoff/price.h"
+#include "compare/tradeoff/priced_model.h"
+#include "evaluate/model.h"
 
 #include <jansson.h>
+#include <stddef.h>
+
+/* ---- Price ---- */
+
+/* What a model costs: bytes, time to fit, time to evaluate and to draw. */
+
+typedef struct weft_price {
+    int photograph_count;        /* that it is made of */
+    double bytes;                /* of the file */
+    double bits_a_texel;         /* of the dataset */
+    double fit_s;                /* of the whole dataset */
+    double evaluations_a_second; /* of one thread: BRDFs at places and directions drawn at random */
+    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD, which nothing plays */
+    bool has_flicker;            /* of BARD there is none */
+    double flicker;              /* below */
+} weft_price;
+
+/* A shop that fits all of the texels of a dataset, or the middle ones. */
+typedef struct weft_price_shop weft_price_shop;
+
+/* A dataset of at most side x side texels is fitted whole; of a larger one a block of as many, with bytes and times in
+ * proportion (files are packed, so that bytes of few texels are not quite in proportion). Files are written to the
+ * folder of `scratch_path`, and are gone afterwards. Both arguments must outlive the shop. The caller frees it. Errors:
+ * those of reading and writing. */
+weft_code weft_price_shop_open(weft_dataset *dataset, int side, const char *scratch_path, const weft_progress *progress,
+                               weft_price_shop **result, weft_error *error);
+void weft_price_shop_close(weft_price_shop *shop);
+
+/* Texels that are fitted. */
+long weft_price_shop_texels(const weft_price_shop *shop);
+
+/* Why nothing is drawn, or "". */
+const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop);
+/* Who draws, or "". */
+const char *weft_price_shop_renderer(const weft_price_shop *shop);
+
+/* Fits the model, unless the one before has the same fit, and weighs and times it. Errors: those of weft_compress, of
+ * writing and drawing. */
+weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, weft_error *error);
+
+/* ---- The list ---- */
 
 typedef struct weft_tradeoff_row {
     weft_priced_model model;
@@ -62,5 +105,26 @@ weft_code weft_tradeoff_write_csv(const weft_tradeoff *tradeoff, const char *pat
 /* Writes the page with its pictures. Errors: WEFT_SYSTEM. */
 weft_code weft_tradeoff_write_page(const weft_tradeoff *tradeoff, const char *dataset_path, const char *folder,
                                    weft_error *error);
+
+/* ---- Flicker ---- */
+
+/* Flicker: how much more the brightness of a place goes up and down than once, while a light sweeps across it. */
+
+/* What a series of `count` values goes up and down in all, and what it would if it rose once to its largest value and
+ * then fell. Adds to both. Pure. */
+typedef struct weft_flicker {
+    double moved, needed;
+} weft_flicker;
+void weft_flicker_add(const double *value, int count, weft_flicker *flicker);
+
+/* moved / needed - 1: 0 for a highlight that comes and goes once, 1 where the brightness goes up and down twice as far.
+ * 0 where nothing moves. Pure. */
+double weft_flicker_excess(const weft_flicker *flicker);
+
+/* Of a model of any kind: at 16 places, seen from 30 degrees in four directions, a light passes from 65 degrees on the
+ * side of the eye through the normal and the mirror direction to 65 degrees, in steps of 2.5 degrees, finer than
+ * directions are photographed. Values are reflectance times cosine, the mean of the channels. A value that is not known
+ * is left out. Errors: those of weft_model_brdf. */
+weft_code weft_flicker_measure(weft_model *model, double *excess, weft_error *error);
 
 #endif

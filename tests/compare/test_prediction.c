@@ -5,7 +5,7 @@
 #include "btf/material/metadata.h"
 #include "compare/tradeoff/component_count.h"
 #include "compare/tradeoff/frame_timer.h"
-#include "compare/tradeoff/preset.h"
+#include "compare/tradeoff/prediction.h"
 #include "compress/compress.h"
 #include "compress/hold_out/hold_out.h"
 #include "compress/run/memory.h"

@@ -1,5 +1,5 @@
 #include "btf/direction/direction.h"
-#include "evaluate/raw_btf.h"
+#include "evaluate/model.h"
 #include "tests/compare/fixture.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The shaders draw what the evaluators of materials and datasets in C compute from the same surface points. */
 #include "stage.h"
 
-#include "evaluate/raw_btf.h"
+#include "evaluate/model.h"
 #include "player/draw/player_parts.h"
 #include "reflectance/components/components.h"
 #include "reflectance/lafortune/lafortune.h"

@@ -6,8 +6,8 @@
 #include "base/atomic_file.h"
 #include "btf/direction/direction.h"
 #include "compare/tradeoff/held_error.h"
-#include "compare/tradeoff/preset.h"
-#include "compare/tradeoff/price.h"
+#include "compare/tradeoff/prediction.h"
+#include "compare/tradeoff/tradeoff.h"
 #include "compress/compress.h"
 #include "compress/hold_out/hold_out.h"
 

@@ -1,6 +1,6 @@
 /* The same dataset in every format: what is drawn is what the evaluator in C finds in the file. */
 #include "../stage.h"
-#include "evaluate/raw_btf.h"
+#include "evaluate/model.h"
 #include "player/draw/player_parts.h"
 
 #include <math.h>
