@@ -1,4 +1,3 @@
-#include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "btf/session/camera_list.h"
 #include "capture/plan.h"
@@ -40,15 +39,6 @@ static const weft_option option_table[] = {
 
 /* Lobes of glossy cloth are some degrees wide: a direction known better than this is as good as any. */
 static const double direction_limit_deg = 0.2;
-
-static weft_code check(void *values, weft_error *error)
-{
-    const calibrate_command *command = values;
-    return weft_is_same_file(command->session, command->output) ||
-                   (command->plan && weft_is_same_file(command->plan, command->output))
-               ? weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite what it is made from", command->output)
-               : WEFT_OK;
-}
 
 /* ---- The capture run ---- */
 
@@ -284,6 +274,5 @@ const weft_command weft_command_calibrate = {
     .options = option_table,
     .needs = "SESSION and -o POSES.json",
     .surplus = "one session at a time",
-    .check = check,
     .run = run,
 };

@@ -38,7 +38,7 @@ static const weft_option option_table[] = {
              "theta_light_deg, "
              "phi_light_deg, theta_view_deg, phi_view_deg",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.plan)},
-    {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",
+    {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig", .usual = "1",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, rig.seed)},
     {"poses", .argument = "POSES.json|FOLDER",
      .help =
@@ -48,9 +48,9 @@ static const weft_option option_table[] = {
     {"truth", .argument = "FILE.h5",
      .help = "Where the ground truth goes (default: SESSION.truth.h5; of several cameras SESSION.CAMERA.truth.h5)",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, truth.path)},
-    {"truth-size", .argument = "N", .help = "Texels along a side of the truth (default: 64)", .kind = WEFT_OPTION_WHOLE,
-     .offset = offsetof(capture_command, truth.size), .low = 1, .high = 4096},
-    {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed (default: 81)",
+    {"truth-size", .argument = "N", .help = "Texels along a side of the truth", .usual = "64",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, truth.size), .low = 1, .high = 4096},
+    {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed", .usual = "81",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, truth.image_count), .low = 1, .high = 1000000},
     {"brackets", .argument = "N",
      .help =
@@ -319,9 +319,7 @@ static weft_code check_options(void *values, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    capture_command command = {.request = {.plan = "ubo81"},
-                               .rig = {.seed = 1, .settings = weft_virtual_settings_default()},
-                               .truth = {.size = 64, .image_count = WEFT_UBO81_COUNT}};
+    capture_command command = {.request = {.plan = "ubo81"}, .rig = {.settings = weft_virtual_settings_default()}};
     weft_arguments_parse(&weft_command_capture, argc, argv, &command);
     weft_error error = {0};
     weft_code code = command.colour ? weft_colour_read(command.colour, &command.request.colour, &error) : WEFT_OK;

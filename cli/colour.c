@@ -1,4 +1,3 @@
-#include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "cli/command/arguments.h"
 #include "registration/colour/calibration.h"
@@ -36,14 +35,6 @@ static const weft_option option_table[] = {
      .offset = offsetof(colour_command, linear)},
     {0},
 };
-
-static weft_code check(void *values, weft_error *error)
-{
-    const colour_command *command = values;
-    return weft_is_same_file(command->input, command->output)
-               ? weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite what it is made from", command->output)
-               : WEFT_OK;
-}
 
 /* ---- Messages ---- */
 
@@ -156,6 +147,5 @@ const weft_command weft_command_colour = {
     .options = option_table,
     .needs = "a photograph of a colour chart and -o COLOUR.json",
     .surplus = "one photograph at a time",
-    .check = check,
     .run = run,
 };

@@ -126,10 +126,7 @@ static weft_code say_held_out(const weft_common_options *common, const weft_comp
     }
     weft_hold_out_headline(&comparison->held_out, line);
     weft_command_say(common, "compressed, %s", line);
-    json_t *object = common->json ? weft_hold_out_to_json(&comparison->held_out) : NULL;
-    weft_code code = object ? weft_command_describe(common, "held_out", object, error) : WEFT_OK;
-    json_decref(object);
-    return code;
+    return weft_command_report(common, "held_out", weft_hold_out_to_json(&comparison->held_out), error);
 }
 
 /* The first scene, whose frames are timed: how a model looks beside the photographs, and what it costs. */

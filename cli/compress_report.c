@@ -80,13 +80,7 @@ static weft_code report_hold_out(const weft_common_options *common, const weft_h
     weft_command_say(common, "  %s", line);
     if (result->has_certificate)
         report_certificate(common, &result->certificate);
-    if (!common->json)
-        return WEFT_OK;
-    json_t *object = weft_hold_out_to_json(result);
-    weft_code code =
-        object ? weft_command_describe(common, "held_out", object, error) : weft_fail_memory(error, "event", 0);
-    json_decref(object);
-    return code;
+    return weft_command_report(common, "held_out", weft_hold_out_to_json(result), error);
 }
 
 /* Of lobes, level by level. */
@@ -211,19 +205,7 @@ weft_code weft_report_prediction(const weft_common_options *common, const weft_p
                      prediction->arguments);
     weft_command_say(common, "  predicted: %.3f MB, relative RMSE %.1f %% on directions that are not fitted%s%s",
                      prediction->bytes * 1e-6, 100 * prediction->error, speed[0] ? ", " : "", speed);
-    json_t *object = common->json ? weft_prediction_to_event(prediction) : NULL;
-    weft_code code = object ? weft_command_describe(common, "predicted", object, error) : WEFT_OK;
-    json_decref(object);
-    return code;
-}
-
-static weft_code report_choice(const weft_common_options *common, json_t *event, weft_error *error)
-{
-    weft_code code = WEFT_OK;
-    if (common->json)
-        code = event ? weft_command_describe(common, "chosen", event, error) : weft_fail_memory(error, "event", 0);
-    json_decref(event);
-    return code;
+    return weft_command_report(common, "predicted", weft_prediction_to_event(prediction), error);
 }
 
 weft_code weft_report_components_for_error(const weft_common_options *common, double wished,
@@ -238,10 +220,10 @@ weft_code weft_report_components_for_error(const weft_common_options *common, do
         weft_command_say(common,
                          "no number of components has a relative RMSE of at most %g %% %s: %d come nearest, %.1f %%",
                          100 * wished, about, chosen->count, 100 * left);
-    return report_choice(common,
-                         json_pack("{s:i, s:f, s:f, s:b}", "components", chosen->count, "wished", wished,
-                                   "relative_rmse", left, "met", chosen->is_met),
-                         error);
+    return weft_command_report(common, "chosen",
+                               json_pack("{s:i, s:f, s:f, s:b}", "components", chosen->count, "wished", wished,
+                                         "relative_rmse", left, "met", chosen->is_met),
+                               error);
 }
 
 weft_code weft_report_components_for_budget(const weft_common_options *common, uint64_t bytes,
@@ -249,10 +231,10 @@ weft_code weft_report_components_for_budget(const weft_common_options *common, u
 {
     weft_command_say(common, "%d components: the most whose file has at most %g MB; predicted: %.3f MB", chosen->count,
                      1e-6 * (double)bytes, 1e-6 * chosen->bytes);
-    return report_choice(common,
-                         json_pack("{s:i, s:I, s:f}", "components", chosen->count, "budget_bytes", (json_int_t)bytes,
-                                   "predicted_bytes", chosen->bytes),
-                         error);
+    return weft_command_report(common, "chosen",
+                               json_pack("{s:i, s:I, s:f}", "components", chosen->count, "budget_bytes",
+                                         (json_int_t)bytes, "predicted_bytes", chosen->bytes),
+                               error);
 }
 
 /* The file is written: where it cannot be drawn, there is only nothing to say of that. */

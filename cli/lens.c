@@ -1,12 +1,9 @@
 #include "base/atomic_file.h"
+#include "base/text/image_list.h"
 #include "base/text/json_text.h"
 #include "cli/command/arguments.h"
 #include "registration/lens/calibration.h"
 
-#include <dirent.h>
-#include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 typedef struct lens_command {
@@ -20,8 +17,6 @@ typedef struct lens_command {
 enum { MODEL_CHOSEN, MODEL_FULL };
 
 static const char *const model_words[] = {"chosen", "full", NULL};
-
-static const char *const extensions[] = {".jpg", ".jpeg", ".png", ".tif", ".tiff"};
 
 static weft_code read_input(const weft_option *option, const char *text, void *target, weft_error *error)
 {
@@ -64,30 +59,14 @@ static weft_code check(void *values, weft_error *error)
 
 /* ---- Photographs ---- */
 
-static int is_photograph(const struct dirent *entry)
-{
-    const char *dot = strrchr(entry->d_name, '.');
-    for (size_t i = 0; dot && entry->d_name[0] != '.' && i < sizeof extensions / sizeof extensions[0]; i++)
-        if (strcasecmp(dot, extensions[i]) == 0)
-            return 1;
-    return 0;
-}
-
 static weft_code add_folder(const char *folder, weft_lines *names, weft_error *error)
 {
-    struct dirent **entry;
-    int count = scandir(folder, &entry, is_photograph, alphasort);
-    if (count < 0)
-        return weft_fail_errno(error, "open", folder);
-    weft_code code =
-        count > 0 ? WEFT_OK
-                  : weft_fail(error, WEFT_BAD_INPUT, "the folder '%s' has no photographs (.jpg, .png, .tif)", folder);
-    for (int i = 0; i < count; i++) {
-        if (code == WEFT_OK)
-            code = weft_lines_add(names, error, "%s/%s", folder, entry[i]->d_name);
-        free(entry[i]);
-    }
-    free(entry);
+    weft_lines found;
+    WEFT_TRY(weft_images_list(folder, &found, error));
+    weft_code code = found.count > 0 ? WEFT_OK : weft_images_missing(folder, error);
+    for (int i = 0; i < found.count && code == WEFT_OK; i++)
+        code = weft_lines_add(names, error, "%s/%s", folder, found.line[i]);
+    weft_lines_free(&found);
     return code;
 }
 
@@ -142,8 +121,8 @@ static void add_values(json_t **event, const weft_lens *lens)
 
 static weft_code show_event(const lens_command *command, const weft_lens_report *report, weft_error *error)
 {
-    json_t *event = json_pack("{ss si si sf si si sf sf sf sf}", "event", "lens", "width", report->lens.camera.width,
-                              "height", report->lens.camera.height, "rms_px", report->lens.rms_px, "used", report->used,
+    json_t *event = json_pack("{si si sf si si sf sf sf sf}", "width", report->lens.camera.width, "height",
+                              report->lens.camera.height, "rms_px", report->lens.rms_px, "used", report->used,
                               "photographs", report->count, "tilt_deg", weft_deg_of_rad(report->tilt_rad), "reach",
                               report->reach, "pattern_px", report->pattern, "noise_px", report->noise);
     add_values(&event, &report->lens);

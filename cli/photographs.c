@@ -24,7 +24,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(photographs_command, input)},
     {"output", 'o', "NAME.btf.h5", "The dataset to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(photographs_command, output)},
-    {"opening", .argument = "MM", .help = "Side of the target's opening as printed (default: 50)",
+    {"opening", .argument = "MM", .help = "Side of the target's opening as printed", .usual = "50",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, opening_mm), .low = 1, .high = 10000},
     {"size", 's', "WxH", "Texels of the opening (default: 256x256)", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(photographs_command, settings.width), .high = LARGEST_SIZE},
@@ -43,7 +43,7 @@ static const weft_option option_table[] = {
      .high = 200},
     {"lights", .argument = "FILE", .help = "What is known of the lamps: an .lp file, or a table (.csv)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, lights)},
-    {"paper", .argument = "SHARE", .help = "Reflectance of the bare paper, 0 to 1 (default: 0.85)",
+    {"paper", .argument = "SHARE", .help = "Reflectance of the bare paper, 0 to 1", .usual = "0.85",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, paper_reflectance), .low = 0.01, .high = 1},
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(photographs_command, report_folder)},
@@ -104,8 +104,7 @@ static weft_code check_report_folder(const char *folder, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    photographs_command command = {
-        .opening_mm = 50, .paper_reflectance = 0.85, .settings = weft_photographs_defaults()};
+    photographs_command command = {.settings = weft_photographs_defaults()};
     weft_arguments_parse(&weft_command_photographs, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
     command.settings.target = weft_target_printed(command.opening_mm);

@@ -26,9 +26,9 @@ static const weft_option option_table[] = {
      .help = "Let pictures of the cloth differ by N/255, RMSE of the screen values (default: 0.5); 0: remove only data "
              "that no pixel can reach",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(prune_command, allowed.rmse), .low = 0, .high = 255},
-    {"flip", .argument = "X", .help = "Let them differ by X in the mean of FLIP (default: 0.05)",
+    {"flip", .argument = "X", .help = "Let them differ by X in the mean of FLIP", .usual = "0.05",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(prune_command, allowed.flip), .low = 0, .high = 1},
-    {"seed", .argument = "N", .help = "Seed of the random moments that are measured (default: 1)",
+    {"seed", .argument = "N", .help = "Seed of the random moments that are measured", .usual = "1",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(prune_command, seed)},
     {0},
 };
@@ -82,13 +82,7 @@ static weft_code say(const prune_command *command, const weft_prune_report *repo
     say_errors(common, report);
     weft_command_say(common, "%s: %.3f MB of %.3f MB, %.1f times smaller", command->output, after * 1e-6, before * 1e-6,
                      before / after);
-    if (!common->json)
-        return WEFT_OK;
-    json_t *object = weft_prune_to_json(report);
-    weft_code code =
-        object ? weft_command_describe(common, "pruned", object, error) : weft_fail_memory(error, "event", 0);
-    json_decref(object);
-    return code;
+    return weft_command_report(common, "pruned", weft_prune_to_json(report), error);
 }
 
 /* ---- The work ---- */
@@ -147,7 +141,7 @@ static weft_code run_headless(prune_command *command, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    prune_command command = {.allowed = {0.5, 0.05}, .seed = 1};
+    prune_command command = {.allowed.rmse = 0.5};
     weft_arguments_parse(&weft_command_prune, argc, argv, &command);
     weft_error error = {0};
     weft_code code = run_headless(&command, &error);

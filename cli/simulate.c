@@ -36,19 +36,19 @@ static const weft_option option_table[] = {
     {.argument = "STITCH", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(simulate_command, input)},
     {"output", 'o', "NAME.btf.h5", "The dataset to write", .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(simulate_command, output)},
-    {"size", 's', "WxH", "Texels of the tile (default: 32x32)", .kind = WEFT_OPTION_SIZE,
+    {"size", 's', "WxH", "Texels of the tile", .usual = "32x32", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(simulate_command, options.width), .high = MAX_TEXELS_ACROSS},
     {"directions", .argument = "WHICH",
      .help = "Directions of views and lights: 64 (default) spread evenly within 80 degrees of the normal, ubo81, or a "
              "CSV with the columns theta_deg and phi_deg",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(simulate_command, directions)},
-    {"bounces", .argument = "N", .help = "Number of bounces of light between yarns (default: 3)",
+    {"bounces", .argument = "N", .help = "Number of bounces of light between yarns", .usual = "3",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(simulate_command, options.bounces), .low = 0, .high = MAX_BOUNCES},
     {"noise", .argument = "PERCENT",
-     .help = "Stop when the standard error of each view is this percentage of its samples, RMS (default: 1)",
+     .help = "Stop when the standard error of each view is this percentage of its samples, RMS", .usual = "1",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(simulate_command, options.noise), .low = 0.01, .high = 1000,
      .divisor = 100},
-    {"seed", .argument = "N", .help = "Seed of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
+    {"seed", .argument = "N", .help = "Seed of the random numbers", .usual = "1", .kind = WEFT_OPTION_SEED,
      .offset = offsetof(simulate_command, options.seed)},
     {"resolution", .argument = "N", .help = "Cells of the mesh across the tile (default: as the stitch says)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(simulate_command, resolution), .low = 4, .high = 1024},
@@ -60,7 +60,7 @@ static const weft_option option_table[] = {
     WEFT_HEIGHTS_OPTION(simulate_command, heights),
     {"obj", .argument = "FILE.obj", .help = "Write the surface of the yarns too; without -o, only that",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(simulate_command, obj)},
-    {"obj-tiles", .argument = "WxH", .help = "Tiles in the OBJ file (default: 1x1)", .kind = WEFT_OPTION_SIZE,
+    {"obj-tiles", .argument = "WxH", .help = "Tiles in the OBJ file", .usual = "1x1", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(simulate_command, tiles_x), .high = MAX_TILES_ACROSS},
     {0},
 };
@@ -234,10 +234,7 @@ static weft_code simulate(const simulate_command *command, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    simulate_command command = {.tiles_x = 1,
-                                .tiles_y = 1,
-                                .heights = true,
-                                .options = {.width = 32, .height = 32, .bounces = 3, .noise = 0.01, .seed = 1}};
+    simulate_command command = {.heights = true};
     weft_arguments_parse(&weft_command_simulate, argc, argv, &command);
     weft_error error = {0};
     weft_code code = simulate(&command, &error);

@@ -51,10 +51,7 @@ static weft_code say_results(const tradeoff_command *command, const weft_tradeof
                      "fitted", "95 % wide");
     for (int i = 0; i < result->row_count; i++) {
         say_row(common, &result->row[i]);
-        json_t *object = common->json ? weft_tradeoff_row_to_json(&result->row[i]) : NULL;
-        weft_code code = object ? weft_command_describe(common, "model", object, error) : WEFT_OK;
-        json_decref(object);
-        WEFT_TRY(common->json && !object ? weft_fail_memory(error, "event", 0) : code);
+        WEFT_TRY(weft_command_report(common, "model", weft_tradeoff_row_to_json(&result->row[i]), error));
     }
     if (result->why_not_drawn[0])
         weft_command_say(common, "no times of frames: %s", result->why_not_drawn);

@@ -40,19 +40,19 @@ static const weft_option option_table[] = {
      .help = "The photographs: all pairs of 81 directions (default), or a table as weft capture takes it",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(truth_command, request.chain.plan)},
     {"tiles", .argument = "N",
-     .help = "Tiles of a stitch across the opening; opening and lens are scaled for it (default: 2; 0: not scaled)",
+     .help = "Tiles of a stitch across the opening; opening and lens are scaled for it; 0: not scaled", .usual = "2",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(truth_command, request.tiles), .low = 0, .high = 1000},
-    {"texels", .argument = "N", .help = "Texels along a side of the opening (default: 32)", .kind = WEFT_OPTION_WHOLE,
+    {"texels", .argument = "N", .help = "Texels along a side of the opening", .usual = "32", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(truth_command, request.chain.size), .low = 1, .high = 1024},
     {"components", .argument = "N",
      .help = "Components of the material, at most 32 (default: as weft compress chooses)", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(truth_command, component_count), .low = 4, .high = MOST_COMPONENTS},
-    {"queries", .argument = "N", .help = "Number of random places, lights and views (default: 2000)",
+    {"queries", .argument = "N", .help = "Number of random places, lights and views", .usual = "2000",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.count), .low = LEAST_QUERIES,
      .high = MOST_QUERIES},
-    {"paths", .argument = "N", .help = "Light paths for each value of the cloth (default: 64)",
+    {"paths", .argument = "N", .help = "Light paths for each value of the cloth", .usual = "64",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.paths), .low = 1, .high = MOST_PATHS},
-    {"seed", .argument = "N", .help = "Seed of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
+    {"seed", .argument = "N", .help = "Seed of the random numbers", .usual = "1", .kind = WEFT_OPTION_SEED,
      .offset = offsetof(truth_command, request.queries.seed)},
     {0},
 };
@@ -77,10 +77,7 @@ static weft_code say_result(const truth_command *command, const weft_error_budge
                      100 * sqrt(fmax(stack->whole.value, 0)), stack->part[WEFT_SOURCE_DIRECTIONS].value,
                      stack->part[WEFT_SOURCE_REGISTRATION].value, stack->part[WEFT_SOURCE_MODEL].value,
                      stack->part[WEFT_SOURCE_STORAGE].value, stack->whole.value, 100 * stack->noise);
-    json_t *object = command->common.json ? weft_error_budget_to_json(result) : NULL;
-    weft_code code = object ? weft_command_describe(&command->common, "sources", object, error) : WEFT_OK;
-    json_decref(object);
-    return command->common.json && !object ? weft_fail_memory(error, "event", 0) : code;
+    return weft_command_report(&command->common, "sources", weft_error_budget_to_json(result), error);
 }
 
 /* What is known so far is on the page and in the table after each cloth. */
@@ -113,10 +110,7 @@ static weft_code measure_all(truth_command *command, weft_error *error)
 static int run(int argc, char **argv)
 {
     static truth_command command;
-    command.request = (weft_error_budget_request){.rig = weft_virtual_settings_default(),
-                                                  .tiles = 2,
-                                                  .chain = {.plan = "ubo81", .size = 32},
-                                                  .queries = {.count = 2000, .paths = 64, .seed = 1}};
+    command.request = (weft_error_budget_request){.rig = weft_virtual_settings_default(), .chain.plan = "ubo81"};
     weft_arguments_parse(&weft_command_truth, argc, argv, &command);
     weft_error error = {0};
     weft_code code = WEFT_OK;

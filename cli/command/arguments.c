@@ -46,6 +46,13 @@ static weft_settings *settings_of(const arguments *a)
 
 /* ---- The table of argp ---- */
 
+/* What argp calls the option of a row: its letter where it has one. */
+static int key_of(const arguments *a, int row)
+{
+    char letter = a->row[row].option->letter;
+    return letter ? letter : FIRST_KEY + row;
+}
+
 static void add_heading(arguments *a, const char *title, int group)
 {
     a->option[a->option_count++] = (struct argp_option){.doc = title, .group = group};
@@ -63,7 +70,7 @@ static void add_row(arguments *a, const weft_option *option, const weft_setting 
         return;
     struct argp_option own = {
         .name = option->name,
-        .key = option->letter ? option->letter : FIRST_KEY + row,
+        .key = key_of(a, row),
         .arg = option->gone ? "VALUE" : option->argument,
         .flags = (option->may_be_empty || option->gone ? OPTION_ARG_OPTIONAL : 0) | (option->gone ? OPTION_HIDDEN : 0),
         .doc = option->help,
@@ -158,7 +165,7 @@ static error_t set_by_key(arguments *a, int key, const char *text, struct argp_s
     for (int row = 0; row < a->row_count; row++) {
         const weft_option *option = a->row[row].option;
         bool is_former = option->former_name && key == FIRST_FORMER_KEY + row;
-        if (!option->name || (key != (option->letter ? option->letter : FIRST_KEY + row) && !is_former))
+        if (!option->name || (key != key_of(a, row) && !is_former))
             continue;
         if (option->gone)
             argp_error(state, "--%s is gone since 0.2: %s", option->name, option->gone);
@@ -173,10 +180,12 @@ static error_t set_by_key(arguments *a, int key, const char *text, struct argp_s
 static char *describe_default(int key, const char *text, void *input)
 {
     const arguments *a = input;
-    int row = key - FIRST_KEY;
+    const weft_option *option = NULL;
     char *longer = NULL;
-    bool has_default = text && a && row >= 0 && row < a->row_count && a->row[row].option->usual;
-    if (!has_default || asprintf(&longer, "%s (default: %s)", text, a->row[row].option->usual) < 0)
+    for (int row = 0; text && a && row < a->row_count; row++)
+        if (a->row[row].option->name && key == key_of(a, row))
+            option = a->row[row].option;
+    if (!option || !option->usual || asprintf(&longer, "%s (default: %s)", text, option->usual) < 0)
         return (char *)text;
     return longer;
 }

@@ -80,3 +80,10 @@ weft_code weft_command_describe(const weft_common_options *common, const char *e
     bool said = common->json ? say_event(common, event, object) : say_object(common, object, 0);
     return said ? WEFT_OK : weft_fail_memory(error, "description", 0);
 }
+
+weft_code weft_command_report(const weft_common_options *common, const char *event, json_t *object, weft_error *error)
+{
+    bool said = object && (!common->json || say_event(common, event, object));
+    json_decref(object);
+    return said ? WEFT_OK : weft_fail_memory(error, "event", 0);
+}

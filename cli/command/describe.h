@@ -11,4 +11,8 @@
 weft_code weft_command_describe(const weft_common_options *common, const char *event, json_t *object,
                                 weft_error *error);
 
+/* With --json one event {"event":NAME, ...}, else nothing. Frees the object; NULL: memory was short. Errors:
+ * WEFT_SYSTEM where memory is short. */
+weft_code weft_command_report(const weft_common_options *common, const char *event, json_t *object, weft_error *error);
+
 #endif
