@@ -51,8 +51,7 @@ static const weft_option option_table[] = {
 static void say_report(const import_command *command, const weft_import_report *report)
 {
     const weft_common_options *common = &command->common;
-    for (int i = 0; i < report->notes.count; i++)
-        weft_command_say(common, "%s", report->notes.line[i]);
+    weft_command_say_lines(common, "", &report->notes);
     weft_command_say(common, "%s: %s, %d x %d texels, %d images from %d views", command->output, report->kind,
                      report->width, report->height, report->image_count, report->view_count);
     weft_command_say(common, "masked: %d missing, %d skipped, %.2f %% of the samples saturated", report->missing_count,

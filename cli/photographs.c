@@ -79,8 +79,7 @@ static void say_lens(const photographs_command *command, const weft_lens_estimat
 static void say_outcome(const photographs_command *command, const weft_photograph_set *set)
 {
     say_left_out(command, set);
-    for (int i = 0; i < set->notes.count; i++)
-        weft_command_say(&command->common, "%s", set->notes.line[i]);
+    weft_command_say_lines(&command->common, "", &set->notes);
     say_lens(command, &set->lens);
     char words[WEFT_PHOTOGRAPHS_TEXT_SIZE];
     weft_photographs_describe_tone(set, words);

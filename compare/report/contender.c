@@ -1,4 +1,4 @@
-#include "compare/report/slices.h"
+#include "compare/report/compare.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "compare/report/slices.h"
+#include "compare/report/compare.h"
 
 #include "base/atomic_file.h"
 #include "btf/direction/direction.h"

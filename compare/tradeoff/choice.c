@@ -1,4 +1,4 @@
-#include "compare/tradeoff/choice.h"
+#include "compare/tradeoff/priced_model.h"
 
 #include <math.h>
 

@@ -4,7 +4,6 @@
 #define WEFT_COMPARE_TRADEOFF_TRADEOFF_H
 
 #include "base/progress.h"
-#include "compare/tradeoff/choice.h"
 #include "compare/tradeoff/held_error.h"
 #include "compare/tradeoff/priced_model.h"
 #include "evaluate/model.h"
@@ -58,7 +57,7 @@ typedef struct weft_tradeoff_row {
     weft_held_error measured;
     bool is_chosen[WEFT_PRESET_COUNT]; /* by each preset; by [WEFT_PRESET_NONE] where by any */
     bool is_of_neighbours; /* its error is that of the texels of its pictures, not of those that lie spread */
-    bool is_beaten;        /* by another that weft compress makes (compare/tradeoff/choice.h) */
+    bool is_beaten;        /* by another that weft compress makes (compare/tradeoff/priced_model.h) */
 } weft_tradeoff_row;
 
 /* Freed with weft_tradeoff_free. */

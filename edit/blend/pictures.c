@@ -1,4 +1,4 @@
-#include "edit/blend/pictures.h"
+#include "edit/blend/steps.h"
 
 #include "btf/dataset/measured.h"
 #include "btf/direction/direction.h"

@@ -1,7 +1,5 @@
 #include "edit/blend/steps.h"
 
-#include "edit/blend/pictures.h"
-
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

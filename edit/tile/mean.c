@@ -1,4 +1,4 @@
-#include "edit/tile/mean.h"
+#include "edit/tile/search_steps.h"
 
 #include <math.h>
 #include <stdlib.h>

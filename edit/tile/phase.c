@@ -1,7 +1,6 @@
 #include "edit/tile/search_steps.h"
 
 #include "edit/tile/fourier.h"
-#include "edit/tile/mean.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "edit/tile/textured_pictures.h"
+#include "edit/tile/search_steps.h"
 
 #include "btf/dataset/read_blocks.h"
 #include "btf/direction/direction.h"

@@ -1,6 +1,6 @@
 #include "btf/dataset/read_blocks.h"
 #include "btf/dataset/write_blocks.h"
-#include "edit/tile/mean.h"
+#include "edit/tile/search_steps.h"
 #include "edit/tile/tile.h"
 
 #include <math.h>

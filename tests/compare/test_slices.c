@@ -1,6 +1,6 @@
 #include "base/text/csv.h"
 #include "btf/direction/direction.h"
-#include "compare/report/slices.h"
+#include "compare/report/compare.h"
 #include "tests/compare/fixture.h"
 
 #include <math.h>

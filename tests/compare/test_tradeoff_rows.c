@@ -3,9 +3,9 @@
 #include "tests/compare/fixture.h"
 
 #include "btf/direction/direction.h"
-#include "compare/tradeoff/choice.h"
 #include "compare/tradeoff/cloth.h"
 #include "compare/tradeoff/held_error.h"
+#include "compare/tradeoff/priced_model.h"
 #include "compare/tradeoff/tradeoff.h"
 
 #include <math.h>

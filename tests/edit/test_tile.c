@@ -1,6 +1,6 @@
 /* weft tile on cloth whose tile is known. */
 #include "btf/direction/direction.h"
-#include "edit/tile/textured_pictures.h"
+#include "edit/tile/search_steps.h"
 #include "edit/tile/tile.h"
 #include "tests/compare/fixture.h"
 
