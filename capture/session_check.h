@@ -37,17 +37,9 @@ weft_code weft_session_check(const weft_session *session, const weft_progress *p
                              weft_session_problems *problems, weft_error *error);
 void weft_session_problems_free(weft_session_problems *problems);
 
-/* Adds a problem with a copy of `text`. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_session_problems_add(weft_session_problems *problems, weft_session_problem_kind kind, int shot,
-                                    const char *text, weft_error *error);
-
 /* Adds what lies in the folder of several cameras and is neither their list nor a session of theirs. Errors:
  * WEFT_SYSTEM. */
 weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_problems *problems,
                                    weft_error *error);
-
-/* Adds every file, and every folder of files, that belongs to no shot of the plan and is no part of a session; and what
- * a killed capture leaves. Other hidden files are ignored. Errors: WEFT_SYSTEM. */
-weft_code weft_find_unexpected(const weft_session *session, weft_session_problems *problems, weft_error *error);
 
 #endif

@@ -15,14 +15,6 @@ static const double backdrop[3] = {0.34, 0.335, 0.33};
 
 /* ---- The sum ---- */
 
-void weft_ground_shadow_free(weft_ground_shadow *s)
-{
-    glDeleteFramebuffers(1, &s->buffer);
-    glDeleteRenderbuffers(1, &s->depth);
-    glDeleteTextures(1, &s->hidden);
-    *s = (weft_ground_shadow){0};
-}
-
 static weft_code create(weft_ground_shadow *s, int side, weft_error *error)
 {
     const weft_texture_format format = {GL_R16F, GL_RED, GL_HALF_FLOAT}; /* exact for whole numbers to 2048 */

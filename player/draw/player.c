@@ -47,6 +47,14 @@ static void free_mesh(weft_player *p)
     p->triangle_count = p->coarse_count = 0;
 }
 
+void weft_ground_shadow_free(weft_ground_shadow *s)
+{
+    glDeleteFramebuffers(1, &s->buffer);
+    glDeleteRenderbuffers(1, &s->depth);
+    glDeleteTextures(1, &s->hidden);
+    *s = (weft_ground_shadow){0};
+}
+
 void weft_player_free(weft_player *p)
 {
     if (!p)
