@@ -207,23 +207,7 @@ static void choose_mesh(weft_interaction *i, double value)
     snprintf(i->message, sizeof i->message, "%s", said[(int)value]);
 }
 
-/* ---- Files and window: switches of the interaction, which `offset` names ---- */
-
-static bool *switch_at(weft_interaction *i, double offset)
-{
-    return (bool *)((char *)i + (size_t)offset);
-}
-
-static void want(weft_interaction *i, double offset)
-{
-    *switch_at(i, offset) = true;
-}
-
-static void switch_over(weft_interaction *i, double offset)
-{
-    bool *on = switch_at(i, offset);
-    *on = !*on;
-}
+/* ---- Files and window ---- */
 
 static void leave(weft_interaction *i, double value)
 {
@@ -283,19 +267,18 @@ static const weft_key keys[] = {
     {"O", "ball", GLFW_KEY_O, .press = choose_mesh, .value = 1},
     {"P", "plane", GLFW_KEY_P, .press = choose_mesh, .value = 2},
     {.name = "Window"},
-    {"F12, Ctrl + S", "save the picture", GLFW_KEY_F12, .press = want, .value = AT(wants_screenshot)},
-    {NULL, NULL, GLFW_KEY_S, .with_control = true, .press = want, .value = AT(wants_screenshot)},
-    {"Ctrl + Z", "undo: light, weave, what is shown", GLFW_KEY_Z, .with_control = true, .press = want,
-     .value = AT(wants_undo)},
-    {"Ctrl + Y", "do it again", GLFW_KEY_Y, .with_control = true, .press = want, .value = AT(wants_redo)},
-    {"R", "read the files again", GLFW_KEY_R, .press = want, .value = AT(wants_reload)},
-    {"F11", "full screen", GLFW_KEY_F11, .press = switch_over, .value = AT(full_screen)},
-    {"Tab", "panel", GLFW_KEY_TAB, .press = switch_over, .value = AT(shows_panel)},
-    {"H, F1", "this list", GLFW_KEY_H, .press = switch_over, .value = AT(shows_help)},
-    {NULL, NULL, GLFW_KEY_F1, .press = switch_over, .value = AT(shows_help)},
+    {"F12, Ctrl + S", "save the picture", GLFW_KEY_F12, .sets = AT(wants_screenshot)},
+    {NULL, NULL, GLFW_KEY_S, .with_control = true, .sets = AT(wants_screenshot)},
+    {"Ctrl + Z", "undo: light, weave, what is shown", GLFW_KEY_Z, .with_control = true, .sets = AT(wants_undo)},
+    {"Ctrl + Y", "do it again", GLFW_KEY_Y, .with_control = true, .sets = AT(wants_redo)},
+    {"R", "read the files again", GLFW_KEY_R, .sets = AT(wants_reload)},
+    {"F11", "full screen", GLFW_KEY_F11, .toggles = AT(full_screen)},
+    {"Tab", "panel", GLFW_KEY_TAB, .toggles = AT(shows_panel)},
+    {"H, F1", "this list", GLFW_KEY_H, .toggles = AT(shows_help)},
+    {NULL, NULL, GLFW_KEY_F1, .toggles = AT(shows_help)},
     {"Esc", "close this list, leave full screen, quit", GLFW_KEY_ESCAPE, .press = leave},
-    {"Q, Ctrl + Q", "quit", GLFW_KEY_Q, .press = want, .value = AT(wants_quit)},
-    {NULL, NULL, GLFW_KEY_Q, .with_control = true, .press = want, .value = AT(wants_quit)},
+    {"Q, Ctrl + Q", "quit", GLFW_KEY_Q, .sets = AT(wants_quit)},
+    {NULL, NULL, GLFW_KEY_Q, .with_control = true, .sets = AT(wants_quit)},
 };
 
 const weft_key *weft_keys(size_t *count)
@@ -304,14 +287,29 @@ const weft_key *weft_keys(size_t *count)
     return keys;
 }
 
+static bool *switch_at(weft_interaction *i, size_t offset)
+{
+    return (bool *)((char *)i + offset);
+}
+
+static void press(weft_interaction *i, const weft_key *key)
+{
+    if (key->press)
+        key->press(i, key->value);
+    if (key->sets)
+        *switch_at(i, key->sets) = true;
+    if (key->toggles)
+        *switch_at(i, key->toggles) = !*switch_at(i, key->toggles);
+}
+
 void weft_keys_press(weft_interaction *i, int code, int modifiers, bool again)
 {
     bool control = modifiers & GLFW_MOD_CONTROL;
     if (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER))
         return;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
-        if (keys[k].code == code && keys[k].press && keys[k].with_control == control && (!again || keys[k].repeats))
-            keys[k].press(i, keys[k].value);
+        if (keys[k].code == code && keys[k].with_control == control && (!again || keys[k].repeats))
+            press(i, &keys[k]);
     }
 }
 

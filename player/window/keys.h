@@ -14,7 +14,8 @@ typedef struct weft_key {
     bool with_control;                               /* only while Ctrl is held; other keys only while it is not */
     bool repeats;                                    /* while it is held */
     void (*press)(weft_interaction *, double value); /* or NULL */
-    double value;                                    /* that `press` gets: which mode, how far, where a switch lies */
+    double value;                                    /* that `press` gets: which mode, how far */
+    size_t sets, toggles;                            /* offsets in weft_interaction of a bool so changed; 0: none */
     void (*release)(weft_interaction *);             /* or NULL */
 } weft_key;
 
