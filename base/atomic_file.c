@@ -316,7 +316,7 @@ weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *s
     else if (!S_ISREG(status.st_mode))
         code = weft_fail(error, WEFT_BAD_INPUT, "cannot read '%s': not a regular file", path);
     else if ((size_t)status.st_size > limit)
-        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' has %lld bytes, more than the %zu that make sense", path,
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' has %lld bytes; at most %zu are read", path,
                          (long long)status.st_size, limit);
     else {
         *size = (size_t)status.st_size;

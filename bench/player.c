@@ -3,13 +3,13 @@
  * the window draws while things move, with as many pixels as it has time for, and with all of them. Usage: bench_player
  * [--size WxH] [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "base/numeric/statistics.h"
+#include "bench/fetches.h"
 #include "bench/measure.h"
 #include "compare/pictures/picture_quality.h"
 #include "player/draw/interactive.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
-#include "bench/fetches.h"
 #include "reflectance/lafortune/lafortune.h"
 
 #include <math.h>

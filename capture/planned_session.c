@@ -35,7 +35,7 @@ static weft_code check_poses(const weft_rig *rig, weft_error *error)
     return is_same_lens(camera, lens)
                ? WEFT_OK
                : weft_fail(error, WEFT_BAD_INPUT,
-                           "'%s' is of a lens with another distortion or vignetting than the rig has: calibrate again",
+                           "'%s' has another lens distortion or vignetting than the rig; calibrate again",
                            rig->poses_path);
 }
 
@@ -148,8 +148,7 @@ static weft_code place_all(const weft_rig *rig, weft_session *session, weft_erro
 {
     size_t count = (size_t)session->shot_count;
     if (!rig->stage.turns)
-        return rig->poses ? weft_fail(error, WEFT_BAD_INPUT, "the rig has no axes that calibrated poses could be of")
-                          : WEFT_OK;
+        return rig->poses ? weft_fail(error, WEFT_BAD_INPUT, "calibrated poses need a rig with axes") : WEFT_OK;
     session->turns = calloc(count, sizeof *session->turns);
     session->pose = rig->poses ? calloc(count, sizeof *session->pose) : NULL;
     if (!session->turns || (rig->poses && !session->pose))

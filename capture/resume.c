@@ -168,9 +168,10 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
         return weft_fail(error, WEFT_BAD_INPUT, "session '%s' was begun with another plan: shot %d differs",
                          wanted->folder, shot);
     if (wanted->colour.terms > 0 && !same_colour(&wanted->colour, &found->colour))
-        return weft_fail(error, WEFT_BAD_INPUT,
-                         "session '%s' was begun with another colour: go on without one, and give it to weft register",
-                         wanted->folder);
+        return weft_fail(
+            error, WEFT_BAD_INPUT,
+            "session '%s' was begun with another colour file: leave out --colour here, and pass it to weft register",
+            wanted->folder);
     if (wanted->dark_frames != found->dark_frames || wanted->flat_frames != found->flat_frames)
         return weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with %d dark and %d flat frames; repeat them or choose another folder",

@@ -272,8 +272,8 @@ static weft_code failure_of_cameras(const run *r, weft_error *error)
             *error = worst->failure;
         return worst->code;
     }
-    return weft_fail(error, worst->code, "camera '%s': %s; run again to take what it lacks", worst->rig->camera_name,
-                     worst->failure.message);
+    return weft_fail(error, worst->code, "camera '%s': %s; run again to take its missing photographs",
+                     worst->rig->camera_name, worst->failure.message);
 }
 
 static weft_code take_all(run *r, const weft_shot_order *order, weft_error *error)

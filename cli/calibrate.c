@@ -113,7 +113,8 @@ static void say_prediction(const weft_common_options *common, const prediction *
                          "the plan");
         return;
     }
-    weft_command_say(common, "expected before the target is looked at, %d poses: %.3f texels of 64 median, %.3f worst",
+    weft_command_say(common,
+                     "predicted before registration refines them, %d poses: %.3f texels of 64 median, %.3f worst",
                      e->poses, e->median_texels, worst->texels);
     weft_command_say(common,
                      "  the worst with turns of %.1f %.1f %.1f degrees: %.3f from the uncertainty of the axes, %.3f "

@@ -30,8 +30,7 @@ static const weft_option option_table[] = {
      .help = "The virtual rig (default), a rig of yours as its file describes it, or settings of the virtual rig",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig_file)},
     {"sample", .argument = "CLOTH.wv|.stitch|NAME",
-     .help = "What the virtual rig photographs: a weave, flat, or a stitch, which has depth; what you call that which "
-             "lies on a rig of yours",
+     .help = "What is photographed. Virtual rig: a weave (flat) or a stitch (with depth). Your own rig: any name",
      .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig.sample)},
     {"plan", .argument = "ubo81|ubo151|FILE.csv",
      .help = "Which photographs: all pairs of 81 directions (default) or of 151, or a table with the columns "
@@ -41,9 +40,8 @@ static const weft_option option_table[] = {
     {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig", .usual = "1",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, rig.seed)},
     {"poses", .argument = "POSES.json|FOLDER",
-     .help =
-         "Where the axes of the virtual rig truly are, as weft calibrate found them; of several cameras, a folder with "
-         "a file for each, CAMERA.json. A rig of yours names its poses in its file",
+     .help = "Calibrated axes of the virtual rig, from weft calibrate; for several cameras, a folder with one "
+             "CAMERA.json each. Your own rig names its poses in its file",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, poses)},
     {"truth", .argument = "FILE.h5",
      .help = "Where the ground truth goes (default: SESSION.truth.h5; of several cameras SESSION.CAMERA.truth.h5)",
@@ -53,20 +51,19 @@ static const weft_option option_table[] = {
     {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed", .usual = "81",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, truth.image_count), .low = 1, .high = 1000000},
     {"brackets", .argument = "N",
-     .help =
-         "Photographs of a shot beyond the first, with other exposures, where that clips or shows shadows badly: up "
-         "to 4 (default: 0)",
+     .help = "Up to N more photographs of a shot, with other exposures, where the first one clips or is too dark (0 to "
+             "4; default: 0)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.brackets), .low = 0,
      .high = WEFT_SESSION_MAX_BRACKETS},
     {"colour", .argument = "COLOUR.json",
      .help = "The colours of the camera under the lamp, from weft colour: kept in the session for registration",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, colour)},
-    {"status", .argument = "FOLDER", .help = "Write a page there that tells how it goes, anew at every view",
+    {"status", .argument = "FOLDER", .help = "Write a page that shows progress, and update it at every view",
      .kind = WEFT_OPTION_FOLDER, .offset = offsetof(capture_command, request.status)},
     {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(capture_command, dry_run)},
     {"check",
-     .help = "Say what would go wrong: focus, light, noise, target, vibration, disk; take a few photographs, write "
+     .help = "Check the rig with a few photographs: focus, light, noise, target, vibration, disk. Writes "
              "SESSION.check.png and no session",
      .kind = WEFT_OPTION_FLAG, .offset = offsetof(capture_command, check)},
     {0},
@@ -283,16 +280,16 @@ static weft_code capture_with_laboratory(const capture_command *command, weft_er
                                              .stop = &stop_asked};
     weft_laboratory *laboratory;
     if (command->truth.path)
-        return weft_fail(error, WEFT_BAD_USAGE, "--truth is of the virtual rig alone");
+        return weft_fail(error, WEFT_BAD_USAGE, "--truth needs the virtual rig");
     if (command->poses)
-        return weft_fail(error, WEFT_BAD_USAGE, "--poses is of the virtual rig alone: name them in '%s'",
+        return weft_fail(error, WEFT_BAD_USAGE, "--poses needs the virtual rig; name the poses of your own rig in '%s'",
                          command->rig_file);
     WEFT_TRY(weft_laboratory_open(&request, &laboratory, error));
     weft_rig *rig = weft_laboratory_rig(laboratory);
     if (rig->next && command->colour) {
         weft_laboratory_close(laboratory);
-        return weft_fail(error, WEFT_BAD_USAGE, "--colour is of one camera: name that of each in '%s'",
-                         command->rig_file);
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "--colour takes one camera; name the colour file of each camera in '%s'", command->rig_file);
     }
     weft_code code = command->dry_run ? rehearse(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
     if (code == WEFT_OK && command->check)
@@ -313,7 +310,7 @@ static weft_code check_options(void *values, weft_error *error)
 {
     const capture_command *command = values;
     return command->dry_run && command->check
-               ? weft_fail(error, WEFT_BAD_USAGE, "--dry-run touches no device, --check needs them: one or the other")
+               ? weft_fail(error, WEFT_BAD_USAGE, "--dry-run and --check exclude each other: --check uses the devices")
                : WEFT_OK;
 }
 
@@ -339,7 +336,7 @@ const weft_command weft_command_capture = {
                      "interruption of any kind, and it goes on where it was.",
     .options = option_table,
     .needs = "--sample with a cloth or a name, and -o SESSION",
-    .surplus = "the session is named by -o",
+    .surplus = "name the session with -o",
     .check = check_options,
     .run = run,
 };

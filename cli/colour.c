@@ -28,8 +28,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(colour_command, chart), .words = weft_chart_word},
     {"model", .argument = "WHICH",
      .help =
-         "linear: a matrix; root: a root polynomial; chosen (default): the one that better predicts a patch that it "
-         "was not fitted to",
+         "linear: a matrix; root: a root polynomial; chosen (default): the one that predicts left-out patches better",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(colour_command, model), .words = model_words},
     {"linear", .help = "8- and 16-bit files hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(colour_command, linear)},

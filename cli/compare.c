@@ -28,7 +28,8 @@ static const weft_option option_table[] = {
     {"fit", .help = "Fit that weave to the dataset first (see fit-weave); writes REPORT/fitted.wv",
      .kind = WEFT_OPTION_FLAG, .offset = offsetof(compare_command, options.fit)},
     {"tiles", .argument = "X,Y",
-     .help = "Tiles of a .wv across the material (default: as --fit finds, its file says, or the virtual rig has it)",
+     .help = "Tiles of a .wv across the material (default: those that --fit finds, else those in its file, else those "
+             "of the virtual rig)",
      .kind = WEFT_OPTION_PAIR, .offset = offsetof(compare_command, options.tiles_u), .high = 1e6},
     {"bard", .argument = "NAME.bard.h5", .help = "Compare this prediction of `weft bard`, too",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(compare_command, options.bard)},

@@ -84,38 +84,36 @@ static const weft_option option_table[] = {
              "for fewer than 20 images, 16 for fewer than 100, else 32; one lobe for fewer than 20 near images)",
      .read = read_components},
     {"lobes", .argument = "1..3",
-     .help = "Instead of components so many Lafortune lobes a texel and channel, with a view table where the images "
-             "suffice for it",
+     .help = "Fit N Lafortune lobes a texel and channel instead of components, with a view table where there are "
+             "enough images",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, lobes), .low = 1, .high = WEFT_MATERIAL_MAX_LOBES},
     {"weights", .argument = "even|screen", .usual = "even",
-     .help = "What an error of a sample counts for. even: all alike, least squares. screen: less the brighter the "
-             "sample, as a screen shows it; where lobes cannot follow a highlight, its surroundings keep their colour",
+     .help = "Weights of the samples. even: all alike (least squares). screen: bright samples count less, as on a "
+             "screen; around highlights that lobes cannot follow, colours stay right",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, weights), .words = weight_words},
     {"error", .argument = "PERCENT",
-     .help = "The fewest components whose relative RMSE on directions that were not fitted is at most this",
+     .help = "Use the fewest components whose relative RMSE on held-out directions is at most this",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, wished_error), .low = 0.001, .high = 100,
      .divisor = 100},
-    {"budget", .argument = "MB", .help = "The most components whose file is no larger than this", .read = read_budget},
+    {"budget", .argument = "MB", .help = "Use the most components whose file is no larger than this",
+     .read = read_budget},
     {"preset", .argument = "small|balanced|best",
-     .help =
-         "Choose components or lobes: tries models on some texels, without some of the views and of the lights, and "
-         "predicts the size of the file and its error on these. small: few bytes; best: the least error; balanced: "
-         "between them, where more bytes gain little (see tradeoff)",
+     .help = "Choose components or lobes. Fits models to some texels with some views and lights held out, and predicts "
+             "file size and held-out error. small: few bytes; best: the least error; balanced: between them, where "
+             "more bytes gain little (see tradeoff)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, preset), .words = preset_words},
     {"fps", .argument = "N",
-     .help = "Choose as --preset does (best, if none is given), of the models of which this machine draws at least so "
-             "many frames a second: 730 x 400 pixels, every texel, level and direction evaluated",
+     .help = "Choose like --preset (default: best), but only models that this machine draws at N frames a second or "
+             "more: 730 x 400 pixels, every texel, level and direction evaluated",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, least_fps), .low = 0.01, .high = 10000},
     {"hold-out", .argument = "off|N",
-     .help =
-         "Fit some texels N times without about a tenth of the views and of the lights, others each time, and measure "
-         "how well the material predicts these (default: 1, or more where few are held out); the material itself is "
-         "fitted to all images",
+     .help = "Measure the held-out error N times: fit some texels without about a tenth of the views and lights, and "
+             "predict those (default: 1, or more for few images). The material itself is fitted to all images",
      .read = read_hold_out},
-    {"memory", .argument = "MB", .help = "Never take more memory than this (default: a quarter of what there is)",
+    {"memory", .argument = "MB", .help = "Use at most this much memory (default: a quarter of the machine's)",
      .read = read_memory},
     /* Of 0.1: */
-    {"table", .gone = "T is fitted wherever the images suffice for it"},
+    {"table", .gone = "T is fitted wherever there are enough images"},
     {"light-table", .gone = "components follow the light better: leave out the option, or use --components"},
     {"tables", .gone = "T has 8 bits; for smaller files use --components or --budget"},
     {"levels", .gone = "materials have mip levels"},

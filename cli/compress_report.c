@@ -110,13 +110,12 @@ static void report_components(const weft_common_options *common, const weft_comp
     static const char *const kind[] = {"the light", "the half vector", "the half vector, squared incidence"};
     char square[64] = "";
     if (components->scattered && components->left_out_count < 2)
-        weft_command_say(common, "one photograph shows nothing of other directions: these are guessed");
+        weft_command_say(common, "one photograph says nothing about other directions; they are guessed");
     else if (components->scattered)
-        weft_command_say(
-            common,
-            "photographs that are no grid: completed by kriging; relative RMSE %.2f %% where each of %d is "
-            "predicted by the others of these",
-            100 * components->left_out_error, components->left_out_count);
+        weft_command_say(common,
+                         "scattered photographs: completed by kriging; relative RMSE %.2f %% when each of %d is "
+                         "predicted from the others",
+                         100 * components->left_out_error, components->left_out_count);
     if (!components->scattered)
         snprintf(square, sizeof square, ", %.2f %% with its squared incidence", 100 * components->trial_error[2]);
     weft_command_say(common,
@@ -162,11 +161,10 @@ static void report_seam(const weft_compressed *done)
         weft_seam_of_material(done->material, &seam, &ignored) != WEFT_OK)
         return;
     if (seam.above_99th >= visible_share || seam.mean_difference >= visible_difference)
-        weft_command_say(
-            done->common,
-            "where it is repeated its ends do not meet: texels there differ %.1f times as much as neighbours do "
-            "(`weft tile %s --blend -o TILE.weft` makes them meet)",
-            seam.mean_difference, done->output);
+        weft_command_say(done->common,
+                         "the material does not tile: texels across its border differ %.1f times as much as neighbours "
+                         "do (`weft tile %s --blend -o TILE.weft` mends that)",
+                         seam.mean_difference, done->output);
     snprintf(event, sizeof event,
              "{\"event\":\"seam\",\"pairs\":%ld,\"above_99th\":%.4g,\"strongest\":%.4g,\"mean_difference\":%.4g}",
              seam.pair_count, seam.above_99th, seam.strongest, seam.mean_difference);
@@ -253,7 +251,7 @@ static void report_speed(const weft_compressed *done)
     print_speed(prediction->frame_ms, predicted);
     print_speed(frame_ms, measured);
     if (measured[0])
-        weft_command_say(done->common, "predicted %s, is %s (%+.1f %%)", predicted, measured,
+        weft_command_say(done->common, "predicted %s, measured %s (%+.1f %%)", predicted, measured,
                          100 * (frame_ms / prediction->frame_ms - 1));
 }
 
@@ -264,10 +262,10 @@ static void report_prediction(const weft_compressed *done)
     double bytes = (double)weft_file_bytes(done->output);
     if (!(prediction->bytes > 0))
         return;
-    weft_command_say(done->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6, bytes * 1e-6,
-                     100 * (bytes / prediction->bytes - 1));
+    weft_command_say(done->common, "predicted %.3f MB, measured %.3f MB (%+.1f %%)", prediction->bytes * 1e-6,
+                     bytes * 1e-6, 100 * (bytes / prediction->bytes - 1));
     if (held_out->split_count > 0 && prediction->error > 0)
-        weft_command_say(done->common, "predicted relative RMSE %.1f %% %s, is %.1f %% (%+.1f %%)",
+        weft_command_say(done->common, "predicted relative RMSE %.1f %% %s, measured %.1f %% (%+.1f %%)",
                          100 * prediction->error, weft_hold_out_about(held_out),
                          100 * held_out->material.all.relative_rmse,
                          100 * (held_out->material.all.relative_rmse / prediction->error - 1));

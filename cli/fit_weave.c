@@ -98,15 +98,13 @@ static void say_askew(const fit_weave_command *command, const weft_fit_weave_rep
     const double *askew = report->askew_deg, *deviation = report->askew_deviation;
     char deviations[96] = "null", event[256];
     if (report->turn == WEFT_TURN_VAGUE)
-        weft_command_say(common, "sample: taken as lying straight, the data do not determine its turn");
+        weft_command_say(common, "sample: assumed to lie straight; the data do not determine its rotation");
     if (report->turn == WEFT_TURN_AT_BOUND)
-        weft_command_say(common,
-                         "sample: taken as lying straight, its turn runs to the bound of a degree: something else "
-                         "is wrong");
+        weft_command_say(common, "sample: assumed to lie straight; its rotation reaches the limit of one degree, so "
+                                 "something else is wrong");
     if (report->turn == WEFT_TURN_FITTED) {
         weft_command_say(
-            common,
-            "sample: lies askew by %.2f +- %.2g, %.2f +- %.2g, %.2f +- %.2g degrees about weft, warp and normal",
+            common, "sample: rotated by %.2f +- %.2g, %.2f +- %.2g, %.2f +- %.2g degrees about weft, warp and normal",
             askew[0], deviation[0], askew[1], deviation[1], askew[2], deviation[2]);
         snprintf(deviations, sizeof deviations, "[%.6g,%.6g,%.6g]", deviation[0], deviation[1], deviation[2]);
     }

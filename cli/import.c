@@ -26,7 +26,7 @@ static const weft_option option_table[] = {
     {"pitch", .argument = "MM", .help = "Size of a texel of the dataset (default: as the collection says, else 1)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.texel_pitch_mm), .low = 1e-6, .high = 1e6},
     {"saturated", .argument = "LEVEL",
-     .help = "Mask samples of 8-bit photographs from this level of 255 on; 256 masks none (default: 250)",
+     .help = "Mask samples of 8-bit photographs at or above this level (default: 250; 256 masks none)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.saturated_at), .low = 1, .high = 256,
      .divisor = 255},
     {"values", .argument = "WHAT",

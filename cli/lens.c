@@ -52,7 +52,7 @@ static weft_code check(void *values, weft_error *error)
         return weft_fail(error, WEFT_BAD_USAGE, "needs %s", weft_command_lens.needs);
     for (int i = 0; i < command->input.count; i++)
         if (weft_is_same_file(command->input.line[i], command->output))
-            return weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite what it is made from", command->output);
+            return weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite its own input", command->output);
     command->settings.full_model = command->model == MODEL_FULL;
     return WEFT_OK;
 }

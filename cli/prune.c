@@ -23,8 +23,8 @@ static const weft_option option_table[] = {
      .help = "Move camera and light through the key frames of this table, as for weft render; default: a still scene",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(prune_command, path_file)},
     {"error", .argument = "N",
-     .help = "Let pictures of the cloth differ by N/255, RMSE of the screen values (default: 0.5); 0: remove only data "
-             "that no pixel can reach",
+     .help = "Allowed difference of pictures: RMSE of N/255 in screen values (default: 0.5); 0: remove only data that "
+             "no pixel can reach",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(prune_command, allowed.rmse), .low = 0, .high = 255},
     {"flip", .argument = "X", .help = "Let them differ by X in the mean of FLIP", .usual = "0.05",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(prune_command, allowed.flip), .low = 0, .high = 1},
@@ -49,13 +49,13 @@ static double percent(weft_prune_count count)
 static void say_reach(const weft_common_options *common, const weft_prune_report *r)
 {
     weft_command_say(
-        common, "seen      %ld spans of the path; mip levels %.1f to %.1f; %.0f %% of the views, %.0f %% of the lights",
+        common, "visible   %ld spans of the path; mip levels %.1f to %.1f; %.0f %% of the views, %.0f %% of the lights",
         r->span_count, r->level_low, r->level_high, percent(r->view_cells), percent(r->light_cells));
     weft_command_say(common, "levels    the finest %d and the coarsest %d are gone; %.1f %% of the texels are seen",
                      r->finer_levels, r->coarser_levels, percent(r->texels));
     if (r->views.of > 0)
-        weft_command_say(common, "table     %ld of %ld views; %ld lobes of texels are gone", r->views.kept, r->views.of,
-                         r->lobes_gone);
+        weft_command_say(common, "table     %ld of %ld views; %ld lobes of texels are removed", r->views.kept,
+                         r->views.of, r->lobes_gone);
     if (r->components.of > 0)
         weft_command_say(common, "components    %ld of %ld; %ld of %ld images; values rounded to %.2g of reflectance",
                          r->components.kept, r->components.of, r->images.kept, r->images.of, r->value_step);
@@ -63,7 +63,7 @@ static void say_reach(const weft_common_options *common, const weft_prune_report
 
 static void say_errors(const weft_common_options *common, const weft_prune_report *r)
 {
-    weft_command_say(common, "predicted RMSE %.3f/255, FLIP %.4f (%d moments that it was chosen by)", r->predicted.rmse,
+    weft_command_say(common, "predicted RMSE %.3f/255, FLIP %.4f (%d frames used for pruning)", r->predicted.rmse,
                      r->predicted.flip, r->decided_count);
     char of[64] = "the same moment, because nothing moves";
     if (r->decided_count > 1)

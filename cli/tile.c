@@ -133,14 +133,15 @@ static weft_code run_on(const tile_command *command, weft_error *error)
         return weft_fail(error, WEFT_BAD_USAGE, "--weave finds tiles of a cloth that repeats; --blend needs none");
     if (command->blend && kind != WEFT_FILE_MATERIAL)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' is no material (.weft): compress the dataset first, then use --blend", command->input);
+                         "'%s' is not a material (.weft): compress the dataset first, then use --blend",
+                         command->input);
     if (!command->blend && kind == WEFT_FILE_MATERIAL)
         return weft_fail(error, WEFT_BAD_INPUT,
                          "'%s' is a material, not a dataset (.btf.h5): to make a material tile, use --blend",
                          command->input);
     const char *dot = strrchr(command->output, '.');
     if (dot && strcmp(dot, command->blend ? ".h5" : ".weft") == 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is the name of a %s, but from a %s a %s is made", command->output,
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' names a %s, but weft tile turns a %s into a %s", command->output,
                          command->blend ? "dataset" : "material", command->blend ? "material" : "dataset",
                          command->blend ? "material" : "dataset");
     return command->blend ? blend(command, error) : average(command, error);

@@ -49,12 +49,12 @@ static weft_code say_none_is_present(const weft_collection *collection, const ch
     if (collection->count > 0)
         return weft_fail(
             error, WEFT_BAD_INPUT,
-            "'%s' holds none of the %d photographs that are listed, as '%s' is; read are JPEG, PNG, TIFF, BMP, "
+            "'%s' holds none of the %d listed photographs, such as '%s'; the formats read are JPEG, PNG, TIFF, BMP, "
             "EXR, HDR and camera raw",
             folder, collection->count, collection->photograph[0].name);
     return weft_fail(error, WEFT_BAD_INPUT,
-                     "'%s' holds no photograph: neither positions, nor directions.csv, nor an .lp file, nor names like "
-                     "%s",
+                     "'%s' holds no photograph with known directions: no position files, no directions.csv, no .lp "
+                     "file, no names like %s",
                      folder, "tv045_pv090/tl030_pl120_tv045_pv090.png");
 }
 

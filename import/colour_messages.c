@@ -64,7 +64,7 @@ static weft_code ask_for_xyz(const weft_colour_messages *messages, const weft_co
         if (!photograph->missing && is_exr(photograph->name) && weft_angle_name_parse(photograph->name, &angles))
             return weft_lines_add(notes, error,
                                   "EXR files named as UTIA names its own, which hold CIE XYZ: taken as linear sRGB; if "
-                                  "they are XYZ say --colours xyz, else --colours srgb");
+                                  "they are XYZ, pass --colours xyz, else --colours srgb");
     }
     return WEFT_OK;
 }

@@ -61,8 +61,8 @@ static weft_code note_scale(weft_import_report *report, weft_error *error)
     if (report->mean < implausible)
         return WEFT_OK;
     return weft_lines_add(&report->notes, error,
-                          "the samples are %.3g in the mean, but a perfect white diffuser is 1: if it is 100 in the "
-                          "photographs say --white 100",
+                          "the mean sample is %.3g, but a perfect white diffuser is 1; if white is 100 in the "
+                          "photographs, pass --white 100",
                           report->mean);
 }
 

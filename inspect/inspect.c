@@ -277,8 +277,8 @@ static weft_code inspect_session(const char *path, const weft_progress *progress
         return inspect_cameras(path, &list, progress, all, result, error);
     if (!holds_session(path))
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' is a folder, but no session: it holds no session.json (of a folder of photographs "
-                         "weft photographs or weft import makes a dataset)",
+                         "'%s' is a folder, but no session: it holds no session.json (weft photographs or weft import "
+                         "makes a dataset of photographs)",
                          path);
     WEFT_TRY(weft_session_open(path, &session, error));
     *result = describe_session(&session);

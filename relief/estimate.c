@@ -240,7 +240,7 @@ static weft_code find_compared(estimate *e, const char *path, weft_error *error)
     free(found);
     if (code == WEFT_OK && e->compared_count < LEAST_COMPARED)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s': %d views up to 62 degrees lie among others; heights need %d to be judged by", path,
+                         "'%s': %d views up to 62 degrees have neighbours on all sides; heights need %d", path,
                          e->compared_count, LEAST_COMPARED);
     return code;
 }

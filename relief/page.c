@@ -20,23 +20,21 @@ void weft_relief_reason(const weft_relief_report *report, char *text, size_t siz
     double against_plane = ratio(error->heights, error->plane), plane_gain = ratio(error->plane, error->flat);
     switch (report->verdict) {
     case WEFT_RELIEF_HEIGHTS:
-        snprintf(
-            text, size,
-            "relief: views that are left out are predicted with an error of %.1f %% through the heights, %.0f %% of "
-            "the %.1f %% through the best plane (at most %.0f %% wanted)",
-            100 * error->heights, 100 * against_plane, 100 * error->plane, 100 * WEFT_RELIEF_GAIN);
+        snprintf(text, size,
+                 "relief: the error on left-out views is %.1f %% with heights, %.0f %% of the %.1f %% with the best "
+                 "plane (limit: %.0f %%)",
+                 100 * error->heights, 100 * against_plane, 100 * error->plane, 100 * WEFT_RELIEF_GAIN);
         break;
     case WEFT_RELIEF_PLANE:
         snprintf(text, size,
-                 "plane: heights predict views that are left out with %.0f %% of the error of the best plane "
-                 "(%.0f %% is wanted), the plane with %.0f %% of that of no depth (%.0f %% is wanted)",
+                 "plane: on left-out views heights have %.0f %% of the error of the best plane (limit: %.0f %%), and "
+                 "the plane has %.0f %% of the error without depth (limit: %.0f %%)",
                  100 * against_plane, 100 * WEFT_RELIEF_GAIN, 100 * plane_gain, 100 * WEFT_RELIEF_PLANE_GAIN);
         break;
     default:
         snprintf(text, size,
-                 "nothing: neither heights (%.0f %% of the error of the best plane, %.0f %% is wanted) nor the "
-                 "plane (%.0f %% of that of no depth, %.0f %% is wanted) predict views that are left out well "
-                 "enough",
+                 "nothing: on left-out views heights have %.0f %% of the error of the best plane (limit: %.0f %%), and "
+                 "the plane has %.0f %% of the error without depth (limit: %.0f %%)",
                  100 * against_plane, 100 * WEFT_RELIEF_GAIN, 100 * plane_gain, 100 * WEFT_RELIEF_PLANE_GAIN);
     }
 }

@@ -22,7 +22,7 @@ static void of_profile(const weft_colour_tags *tags, weft_colour_claim *claim)
 {
     bool is_read = weft_icc_profile_read(tags->profile, tags->profile_size, &claim->space);
     if (!is_read) {
-        snprintf(claim->words, sizeof claim->words, "its ICC profile '%s' is not one of curves and primaries",
+        snprintf(claim->words, sizeof claim->words, "its ICC profile '%s' does not consist of curves and primaries",
                  claim->space.name);
         take_by_custom(WEFT_CLAIM_UNCLEAR, claim);
         return;
@@ -64,7 +64,8 @@ static void say_nothing(const weft_colour_tags *tags, weft_colour_claim *claim)
     take_by_custom(WEFT_CLAIM_NONE, claim);
     if (tags->bits >= 16 && !tags->is_float)
         snprintf(claim->words, sizeof claim->words,
-                 "it has %d bits and says no tone curve: if it is linear say --linear", tags->bits);
+                 "it has %d bits and does not state its tone curve; if its values are linear, pass --linear",
+                 tags->bits);
 }
 
 void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim)
@@ -75,7 +76,7 @@ void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim
     if (tags->is_raw)
         unclear(claim, "it is camera raw, in the colours of the camera and without white balance");
     else if (tags->model[0])
-        unclear(claim, "it holds inks (CMYK), made RGB by a rule of thumb");
+        unclear(claim, "it holds CMYK inks; their conversion to RGB is approximate");
     else if (tags->profile)
         of_profile(tags, claim);
     else if (tags->has_primaries)
@@ -83,7 +84,7 @@ void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim
     else if (tags->gamma > 0.1 && tags->gamma < 10 && !tags->is_float)
         of_gamma(tags->gamma, claim);
     else if (tags->is_uncalibrated)
-        unclear(claim, "its Exif says that it is not sRGB: often it is Adobe RGB");
+        unclear(claim, "its Exif data say that it is not sRGB; often it is Adobe RGB");
     else
         say_nothing(tags, claim);
     if (tags->is_float || tags->is_raw)

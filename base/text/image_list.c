@@ -130,6 +130,6 @@ weft_code weft_images_missing(const char *folder, weft_error *error)
     if (seen.films > 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: %d of its %d files are films; take single photographs",
                          folder, holds, seen.films, seen.files);
-    return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: by their names its %d files are something else", folder, holds,
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: none of its %d files has the name of a photograph", folder, holds,
                      seen.files);
 }

@@ -132,7 +132,7 @@ static weft_code read_lp_row(weft_light_list *list, char *line, int number, weft
     for (int i = 2; i >= 0; i--) {
         char *word = cut_last_word(line, &mark[i]);
         if (!word || !read_number(word, &value[i]) || mark[i] != mark[2])
-            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: not a name and three numbers", list->path, number);
+            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: expected a name and three numbers", list->path, number);
         if (word == line) /* nothing stands before it */
             *line = 0;
     }

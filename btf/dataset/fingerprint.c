@@ -95,7 +95,7 @@ weft_code weft_dataset_fingerprint_compare(weft_dataset *dataset, const char *me
     if (origin && code == WEFT_OK) {
         bool layout = is_another(origin, "layout", own.layout), samples = is_another(origin, "samples", own.samples);
         if (layout || samples)
-            snprintf(warning, WEFT_MESSAGE_SIZE, "the material was not made from '%s' as it is: %s differ",
+            snprintf(warning, WEFT_MESSAGE_SIZE, "the material was not made from this '%s': %s differ",
                      weft_dataset_path(dataset), layout ? "sizes, lights or views" : "the samples");
     }
     json_decref(object);

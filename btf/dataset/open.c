@@ -188,8 +188,8 @@ static weft_code open_array(const weft_dataset *dataset, const char *name, int r
     if (class != H5T_FLOAT && class != H5T_INTEGER)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' holds no numbers", dataset->path, name);
     if (found != rank)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' must be numbers in %d dimensions, has %d", dataset->path,
-                         name, rank, found);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' must be a numeric array of %d dimensions; it has %d",
+                         dataset->path, name, rank, found);
     return WEFT_OK;
 }
 
@@ -384,7 +384,7 @@ static weft_code open_file(weft_dataset *dataset, weft_error *error)
     if (!S_ISREG(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': not a regular file", dataset->path);
     if (is_material(dataset->path))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a material: a dataset (NAME.btf.h5) belongs in its place",
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a material; a dataset (NAME.btf.h5) is needed here",
                          dataset->path);
     dataset->file_size = (uint64_t)status.st_size;
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);

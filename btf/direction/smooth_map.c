@@ -98,8 +98,8 @@ static weft_code allocate(const weft_smooth_map_places *places, weft_smooth_map 
 weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smooth_map **result, weft_error *error)
 {
     if (places->side < LEAST_SIDE || places->side > MOST_SIDE || !(places->smoothness > 0))
-        return weft_fail(error, WEFT_BAD_USAGE, "a smooth map of %d nodes a side and smoothness %g", places->side,
-                         places->smoothness);
+        return weft_fail(error, WEFT_BAD_USAGE, "a smooth map cannot have %d nodes a side and smoothness %g",
+                         places->side, places->smoothness);
     weft_smooth_map *map = calloc(1, sizeof *map);
     if (!map)
         return weft_fail_memory(error, "smooth map", sizeof *map);
@@ -107,7 +107,7 @@ weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smoo
     if (code == WEFT_OK) {
         assemble(map, places);
         if (LAPACKE_dpbtrf_work(LAPACK_COL_MAJOR, 'L', map->node_count, map->width, map->band, map->width + 1) != 0)
-            code = weft_fail(error, WEFT_BAD_INPUT, "directions that are no numbers have no smooth map");
+            code = weft_fail(error, WEFT_BAD_INPUT, "a smooth map needs finite directions");
     }
     if (code != WEFT_OK)
         weft_smooth_map_free(map);

@@ -48,8 +48,7 @@ static weft_code check_header(weft_material_file *file, weft_error *error)
     size_t start = file->size < sizeof weft_format_magic ? file->size : sizeof weft_format_magic;
     static const unsigned char hdf5[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
     if (file->size >= sizeof hdf5 && memcmp(file->bytes, hdf5, sizeof hdf5) == 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a dataset: a material (NAME.weft) belongs in its place",
-                         file->path);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a dataset; a material (NAME.weft) is needed here", file->path);
     if (memcmp(file->bytes, weft_format_magic, start) != 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file", file->path);
     if (file->size < WEFT_FORMAT_HEADER_SIZE)

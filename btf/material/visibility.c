@@ -104,7 +104,7 @@ static const char *fault_of_header(const uint32_t word[HEADER_WORDS], size_t siz
     if (word[0] < WEFT_MATERIAL_VISIBILITY_LEAST_SIDE || word[0] > WEFT_MATERIAL_VISIBILITY_MOST_SIDE)
         return "has maps that are not 4 to 128 cells wide";
     if (word[1] != (uint32_t)level_count)
-        return "is not of the levels of the material";
+        return "does not fit the levels of the material";
     if (word[2] > WEFT_MATERIAL_VISIBILITY_MOST_LEVELS || word[3] > WEFT_MATERIAL_VISIBILITY_MOST_LEVELS)
         return "says that more levels are missing than a material may have";
     for (int i = 4; i < HEADER_WORDS; i++)

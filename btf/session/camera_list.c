@@ -83,10 +83,10 @@ weft_code weft_camera_file(const char *path, const char *camera, char *file, siz
     struct stat status;
     bool is_folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
     if (camera && !is_folder)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no folder with '%s.json' and so on, a file for each camera",
-                         path, camera);
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' must be a folder with one file for each camera, such as '%s.json'", path, camera);
     if (!camera && is_folder)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, and there is one camera: name its file", path);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder; there is one camera, so name its file", path);
     snprintf(file, size, "%s%s%s%s", path, camera ? "/" : "", camera ? camera : "", camera ? ".json" : "");
     return WEFT_OK;
 }
@@ -98,8 +98,8 @@ weft_code weft_camera_session_open(const char *folder, weft_session *session, we
     weft_camera_list list;
     WEFT_TRY(weft_camera_list_read(folder, &list, error));
     if (list.count > 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is of several cameras: one of them belongs here, as '%s/%s'",
-                         folder, folder, list.name[0]);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds several cameras; name one of them, such as '%s/%s'", folder,
+                         folder, list.name[0]);
     return weft_session_open(folder, session, error);
 }
 
@@ -128,8 +128,11 @@ weft_code weft_camera_sessions_open(const char *folder, weft_session **sessions,
     if (!*sessions)
         return weft_fail_memory(error, folder, WEFT_CAMERAS_MAX * sizeof **sessions);
     weft_code code = open_all(folder, &list, *sessions, count, error);
-    if (code != WEFT_OK)
+    if (code != WEFT_OK) {
         weft_camera_sessions_free(*sessions, *count);
+        *sessions = NULL;
+        *count = 0;
+    }
     return code;
 }
 

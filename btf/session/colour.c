@@ -68,8 +68,7 @@ static weft_code check_numbers(const char *path, const weft_colour *colour, weft
                         : !isfinite(colour->fitted.mean + colour->fitted.worst)     ? "fitted"
                         : !isfinite(colour->left_out.mean + colour->left_out.worst) ? "left_out"
                                                                                     : NULL;
-    return wrong ? weft_fail(error, WEFT_BAD_INPUT, "'%s' is not written: '%s' came out infinite, or as no number",
-                             path, wrong)
+    return wrong ? weft_fail(error, WEFT_BAD_INPUT, "'%s' was not written: '%s' is not a finite number", path, wrong)
                  : WEFT_OK;
 }
 

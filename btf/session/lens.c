@@ -77,8 +77,8 @@ static weft_code check_camera(const weft_camera *c, const char *path, weft_error
     for (int i = 0; i < WEFT_LENS_PARAMETERS; i++) {
         double value = weft_lens_parameter(c, i);
         if (!(fabs(value) <= largest_coefficient))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' is %g, of no lens", path, weft_lens_parameter_name[i],
-                             value);
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' is %g, which no lens has", path,
+                             weft_lens_parameter_name[i], value);
     }
     return WEFT_OK;
 }

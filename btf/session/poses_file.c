@@ -109,8 +109,8 @@ static weft_code check_numbers(const char *path, const weft_poses_file *file, we
                 {"camera", sum_of_lens(file)}};
     for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
         if (!isfinite(part[i].sum))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not written: '%s' came out infinite, or as no number",
-                             path, part[i].name);
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s' was not written: '%s' is not a finite number", path,
+                             part[i].name);
     }
     return WEFT_OK;
 }
@@ -208,7 +208,7 @@ static weft_code unpack_joints(json_t *joints, const char *path, weft_poses_file
     for (int k = 0; k < WEFT_JOINTS; k++) {
         if (!unpack_joint(json_array_get(joints, (size_t)k), (weft_joint_name)k, &file->poses.joint[k],
                           &file->error[k]))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': the joint '%s' lacks a field, or one cannot be", path,
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': the joint '%s' lacks a field, or has an invalid one", path,
                              weft_joint_text[k]);
     }
     return WEFT_OK;
@@ -220,7 +220,7 @@ static weft_code check_camera(const weft_camera *c, const char *path, weft_error
         c->width >= 1 && c->height >= 1 && c->width <= MAX_SIDE && c->height <= MAX_SIDE && c->fx > 0 && c->fy > 0;
     for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
         sound = sound && fabs(weft_lens_parameter(c, i)) <= largest_coefficient;
-    return sound ? WEFT_OK : weft_fail(error, WEFT_BAD_INPUT, "'%s': 'camera' is of no lens", path);
+    return sound ? WEFT_OK : weft_fail(error, WEFT_BAD_INPUT, "'%s': 'camera' does not describe a lens", path);
 }
 
 static weft_code unpack_fields(json_t *root, const char *path, weft_poses_file *file, weft_error *error)

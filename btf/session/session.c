@@ -12,7 +12,7 @@
 enum { SESSION_VERSION = 1, MAX_SESSION_BYTES = 1 << 28 };
 
 static const char session_name[] = "session.json";
-static const weft_json_kind kind = {"weft_session", SESSION_VERSION, "is no session", "is a session"};
+static const weft_json_kind kind = {"weft_session", SESSION_VERSION, "is not a session", "is a session"};
 
 static void session_path(const weft_session *session, char path[PATH_MAX])
 {
@@ -175,9 +175,9 @@ static weft_code unpack_places(json_t *plan, const char *path, weft_session *ses
     for (size_t i = 0; i < count; i++) {
         json_t *shot = json_array_get(plan, i);
         if (turns && !unpack_turns(json_object_get(shot, "turns_deg"), &session->turns[i]))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'turns_deg' of shot %zu of the plan cannot be", path, i);
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'turns_deg' of shot %zu of the plan is invalid", path, i);
         if (poses && !unpack_pose(json_object_get(shot, "pose"), &session->pose[i]))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'pose' of shot %zu of the plan cannot be", path, i);
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'pose' of shot %zu of the plan is invalid", path, i);
     }
     return WEFT_OK;
 }

@@ -92,7 +92,7 @@ static weft_code place(const weft_axes *axes, weft_body body, weft_turn turn, do
     double low = axis->low_deg + (axis->approach_down ? 0 : axis->backlash_deg);
     double high = axis->high_deg - (axis->approach_down ? axis->backlash_deg : 0);
     if (position < low - same_deg || position > high + same_deg)
-        return weft_fail(error, WEFT_BAD_INPUT, "axis '%s' would have to stand at %g degrees, not in %g to %g",
+        return weft_fail(error, WEFT_BAD_INPUT, "axis '%s' would have to turn to %g degrees; its range is %g to %g",
                          axis->name, position, low, high);
     positions->deg[k] = position;
     return WEFT_OK;

@@ -370,7 +370,7 @@ static weft_code begin(tethered_camera *c, weft_error *error)
     gp_context_set_error_func(c->context, note_error, c);
     int result = open_camera(c);
     if (result == GP_ERROR_MODEL_NOT_FOUND)
-        return weft_fail(error, WEFT_SYSTEM, "%s: none is connected that libgphoto2 knows", name);
+        return weft_fail(error, WEFT_SYSTEM, "%s: libgphoto2 finds no camera that it knows", name);
     return result >= GP_OK ? expect_release(c, error) : fail_with(c, result, "open it", error);
 }
 

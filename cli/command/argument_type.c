@@ -80,7 +80,7 @@ static weft_code refuse(const char *path, const char *what, const char *argument
         length += (size_t)written;
         part = *end ? end + 1 : end;
     }
-    return weft_fail(error, WEFT_BAD_INPUT, "'%s' is %s: %s belongs in its place", path, what, wanted);
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s' is %s; %s is needed here", path, what, wanted);
 }
 
 weft_code weft_argument_check_type(const char *argument, const char *path, weft_error *error)
@@ -94,15 +94,15 @@ weft_code weft_argument_check_type(const char *argument, const char *path, weft_
         return WEFT_OK;
     if (strcmp(argument, "SESSION") == 0 && S_ISDIR(status.st_mode) && !holds_session(path))
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' is no session: it holds no session.json (photographs of yours: weft photographs, or "
-                         "weft import)",
+                         "'%s' is not a session: it holds no session.json (for your own photographs use weft "
+                         "photographs or weft import)",
                          path);
     if (weft_file_kind_of(path, &kind, NULL) == WEFT_OK) {
         bool belongs = is_kind(argument, argument + strlen(argument), kind);
         return belongs ? WEFT_OK : refuse(path, kinds[kind].name, argument, error);
     }
     if (weft_file_is_bonn(path))
-        return refuse(path, "a BTF of Bonn, of which weft import makes a dataset", argument, error);
+        return refuse(path, "a BTF file of Bonn (weft import turns it into a dataset)", argument, error);
     if (!all_known || strstr(argument, ".jpg"))
         return WEFT_OK;
     return refuse(path, status.st_size == 0 ? "empty" : "neither dataset nor material, weave, mesh or picture",

@@ -157,7 +157,7 @@ static void set_next(arguments *a, const char *text, struct argp_state *state)
         set(a, row, text, state);
         return;
     }
-    argp_error(state, "%s: '%s' is one too many", a->command->surplus, text);
+    argp_error(state, "%s: unexpected argument '%s'", a->command->surplus, text);
 }
 
 static error_t set_by_key(arguments *a, int key, const char *text, struct argp_state *state)
@@ -227,7 +227,7 @@ static void refuse_same_file(const char *output, const char *input, struct argp_
     struct stat written, read;
     if (output && input && stat(output, &written) == 0 && stat(input, &read) == 0 && written.st_dev == read.st_dev &&
         written.st_ino == read.st_ino)
-        argp_error(state, "'%s' would overwrite what it is made from", output);
+        argp_error(state, "'%s' would overwrite its own input", output);
 }
 
 static void refuse_overwriting(const arguments *a, struct argp_state *state)

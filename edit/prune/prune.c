@@ -202,9 +202,8 @@ weft_code weft_prune(weft_player *player, const weft_prune_scene *scene, weft_pr
     weft_prune_pictures pictures[3] = {0};
     *report = (weft_prune_report){.allowed = allowed};
     if (material->visibility)
-        return weft_fail(
-            error, WEFT_BAD_INPUT,
-            "the material was pruned for a scene before: prune the whole one, which has more to choose from");
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "the material was already pruned for a scene; prune the whole material instead");
     WEFT_TRY(weft_material_size(material, &report->bytes_before, error));
     WEFT_TRY(weft_visibility_find(scene, material, progress, &visibility, error));
     weft_code code = prune(player, scene, seed, &visibility, pictures, progress, material, report, error);

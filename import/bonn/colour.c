@@ -38,8 +38,8 @@ static bool is_read(int model)
 weft_code weft_bonn_colour_check(const weft_bonn_colour *colour, const char *path, weft_error *error)
 {
     if (!is_read(colour->model))
-        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s': its colours are of model %d%s, which is not read", path,
-                         colour->model, name_of(colour->model));
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s': its colour model %d%s is not supported", path, colour->model,
+                         name_of(colour->model));
     if (colour->model != WEFT_BONN_PCA)
         return WEFT_OK;
     for (int i = 0; i < 3; i++) {

@@ -42,10 +42,10 @@ static weft_code read_signature(weft_bonn_reader *reader, const struct signature
     WEFT_TRY(weft_bonn_reader_take(reader, head, size, error));
     *signature = signature_of(head);
     if (!*signature)
-        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' begins with '%s': read are !DFMF08FC, !FMF06FC and !FMF12FCE",
-                         reader->path, head);
+        return weft_fail(error, WEFT_NOT_SUPPORTED,
+                         "'%s' begins with '%s': supported are !DFMF08FC, !FMF06FC and !FMF12FCE", reader->path, head);
     if ((*signature)->kind == NOT_READ)
-        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' holds %s, which are not read: DFMF and FMF are", reader->path,
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' holds %s; only DFMF and FMF are read", reader->path,
                          (*signature)->words);
     size_t length = strlen((*signature)->text);
     *has_frames = head[length] == 'R';
@@ -78,8 +78,8 @@ static weft_code read_channel_names(weft_bonn_reader *reader, weft_error *error)
     uint32_t count, length;
     WEFT_TRY(weft_bonn_reader_whole(reader, &count, error));
     if (count != WEFT_BONN_CHANNELS)
-        return weft_fail(error, WEFT_NOT_SUPPORTED,
-                         "'%s' has %u channels of colour: files of red, green and blue are read", reader->path, count);
+        return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' has %u channels of colour: only red, green and blue are read",
+                         reader->path, count);
     for (uint32_t i = 0; i < count; i++) {
         char name[32] = "";
         WEFT_TRY(weft_bonn_reader_whole(reader, &length, error));
@@ -88,8 +88,8 @@ static weft_code read_channel_names(weft_bonn_reader *reader, weft_error *error)
         WEFT_TRY(weft_bonn_reader_skip(reader, length - kept, error));
         if (is_number(name))
             return weft_fail(error, WEFT_NOT_SUPPORTED,
-                             "'%s' is multispectral (channel '%s'): files of red, green and blue are read",
-                             reader->path, name);
+                             "'%s' is multispectral (channel '%s'): only red, green and blue are read", reader->path,
+                             name);
     }
     return WEFT_OK;
 }
@@ -129,7 +129,7 @@ static weft_code read_description(weft_bonn_reader *reader, weft_bonn_file *file
     WEFT_TRY(read_additions(reader, version, file, error));
     file->pixels_per_mm = (double)pixels_per_mm;
     if (begin - reader->left != size)
-        return weft_fail(error, WEFT_DAMAGED, "'%s': its description is to have %u bytes and has %llu", reader->path,
+        return weft_fail(error, WEFT_DAMAGED, "'%s': its description should have %u bytes; it has %llu", reader->path,
                          size, (unsigned long long)(begin - reader->left));
     return WEFT_OK;
 }

@@ -15,7 +15,7 @@ static weft_code refuse_second_material(const weft_given_option *option, int cou
     for (int i = 0; i < count; i++) {
         bool is_material = !option[i].setting->option.name;
         if (is_there && is_material)
-            return weft_fail(error, WEFT_BAD_USAGE, "one material at a time: '%s' is one too many", option[i].text);
+            return weft_fail(error, WEFT_BAD_USAGE, "one material at a time: unexpected argument '%s'", option[i].text);
         is_there |= is_material;
     }
     return WEFT_OK;

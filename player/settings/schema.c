@@ -322,7 +322,7 @@ static const weft_setting schema[] = {
     SETTING(
         "size.repeat",
         OPTION("repeat", "N", MESH_AND_CAMERA,
-               "Materials across one unit of texture coordinates (default: so many that the cloth has its real size)"),
+               "Materials across one unit of texture coordinates (default: as many as give the cloth its real size)"),
         NUMBER(scene.repeat, 1e-9, 1e9), .read = choose_repeat),
     SETTING("size.mesh_mm",
             OPTION("mesh-size", "MM", MESH_AND_CAMERA,
@@ -344,7 +344,8 @@ static const weft_setting schema[] = {
     SETTING("camera.pan_up", NUMBER(scene.orbit.pan_up, -1e6, 1e6)),
     SETTING(NULL,
             OPTION("camera", "AZIMUTH,ELEVATION,DISTANCE", MESH_AND_CAMERA,
-                   "Place of the camera in degrees and radii of the mesh (default: -70,28,3.6; plane: -90,75,3)"),
+                   "Camera: azimuth and elevation in degrees, distance in radii of the mesh (default: -70,28,3.6; "
+                   "plane: -90,75,3)"),
             .read = choose_camera),
 
     {.key = "light.lights",
@@ -386,12 +387,10 @@ static const weft_setting schema[] = {
             "Mip level: between the two that fit the pixel's footprint, the nearer of them, the finest, or this one"),
         CHOICE(scene.level_choice, level_words), .read = choose_level),
     SETTING("mip.fixed_level", NUMBER(scene.level, 0, WEFT_MATERIAL_MAX_LEVELS)),
-    SETTING(
-        "mip.filter",
-        OPTION(
-            "filter", "auto|exact|stochastic", EVALUATION,
-            "Interpolate every neighbour in every frame, or one drawn at random: noisy at once, the same in the mean"),
-        CHOICE(scene.filter, filter_words)),
+    SETTING("mip.filter",
+            OPTION("filter", "auto|exact|stochastic", EVALUATION,
+                   "Interpolate all neighbours in every frame, or one at random: noisy frames with the same mean"),
+            CHOICE(scene.filter, filter_words)),
 
     SETTING("model.raw_format",
             OPTION("raw-format", "auto|half|rgb9e5|bc6h", SHOWN,

@@ -79,12 +79,13 @@ static weft_code check_tone(const weft_chart_light *chart, const char *path, wef
     double misfit = weft_grey_misfit(&chart->decoded, &chart->reference, chart->used), curved, linear;
     if (!chart->has_tone && misfit > largest_linear_misfit)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s': the greys of the chart do not grow with light (they are off by %.2f, RMS of their "
-                         "logarithms): the values are not linear",
+                         "'%s': the greys of the chart are not proportional to light (RMS error of their logarithms: "
+                         "%.2f), so the values are not linear",
                          path, misfit);
     if (chart->has_tone && compare_tones(chart, &curved, &linear) && linear < curved)
-        return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s': the greys of the chart grow with light: the values are linear: say --linear", path);
+        return weft_fail(
+            error, WEFT_BAD_INPUT,
+            "'%s': the greys of the chart are proportional to light, so the values are linear; pass --linear", path);
     return WEFT_OK;
 }
 
@@ -166,8 +167,8 @@ static weft_code warn(weft_colour_report *r, weft_error *error)
 {
     if (r->colour.left_out.mean > poor_difference)
         WEFT_TRY(weft_lines_add(&r->warnings, error,
-                                "the matrix misses a colour that it was not fitted to by %.1f CIEDE2000: a raw file "
-                                "does better than a JPEG, a lamp of full spectrum better than one with gaps",
+                                "the error on left-out colours is %.1f CIEDE2000; a raw file does better than a JPEG, "
+                                "and a lamp of full spectrum better than one with gaps",
                                 r->colour.left_out.mean));
     if (r->lamp_range > uneven_lamp)
         WEFT_TRY(weft_lines_add(&r->warnings, error,

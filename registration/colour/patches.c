@@ -193,7 +193,7 @@ static weft_code open_library(const weft_chart_library **library, weft_error *er
 {
     void *module = dlopen("weft_chart_library.so", RTLD_NOW | RTLD_LOCAL);
     *library = module ? dlsym(module, "weft_chart_library_table") : NULL;
-    return *library ? WEFT_OK : weft_fail(error, WEFT_SYSTEM, "charts cannot be looked for: %s", dlerror());
+    return *library ? WEFT_OK : weft_fail(error, WEFT_SYSTEM, "cannot search for colour charts: %s", dlerror());
 }
 
 static weft_code look(search *s, const weft_chart_library *library, float exponent, weft_error *error)
@@ -212,11 +212,10 @@ static weft_code settle(search *s, const char *path, weft_chart_patch patch[WEFT
 {
     int seen = 0;
     if (!(s->agreement >= least_agreement))
-        return weft_fail(
-            error, WEFT_BAD_INPUT,
-            "'%s': no colour chart is seen in it, or not all of it: lay it flat, uncovered, in even light, "
-            "filling a third of the photograph or more",
-            path);
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s': no complete colour chart was found in it; lay it flat, uncovered, in even light, "
+                         "filling a third of the photograph or more",
+                         path);
     if (s->is_mirrored)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': the colour chart is mirrored", path);
     WEFT_TRY(show(s, power[0], error));

@@ -71,8 +71,9 @@ weft_code weft_listed_check(const weft_light_list *list, const weft_photographs_
     for (int i = 0; i < count; i++)
         named += weft_light_list_find(list, photograph[i].name) >= 0;
     if (named == 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' lists none of the photographs: it has '%s', the folder '%s'",
-                         list->path, list->row[0].file, count > 0 ? photograph[0].name : "");
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' lists none of the photographs; it names '%s', the folder holds '%s'", list->path,
+                         list->row[0].file, count > 0 ? photograph[0].name : "");
     return WEFT_OK;
 }
 

@@ -48,8 +48,8 @@ static weft_code leave_out_worst(weft_board_photograph *photograph, const weft_l
         *changed = off[worst] > least_off_px && off[worst] > off_ratio * usual;
         if (*changed)
             weft_board_leave_out(&photograph[fit->photograph[worst]],
-                                 "its corners are %.2f pixels off where the lens puts them, %.2f in others", off[worst],
-                                 usual);
+                                 "its corners are %.2f pixels from their predicted places, %.2f in other photographs",
+                                 off[worst], usual);
     }
     free(off);
     return code;
@@ -71,7 +71,7 @@ static weft_code mark_strays(weft_board_photograph *photograph, const weft_lens_
             strays++;
         }
         if (strays > strayed_share * fit->view[view].count || fit->view[view].count - strays < 4)
-            weft_board_leave_out(p, "%d of its %d corners are more than %.1f pixels off where the lens puts them",
+            weft_board_leave_out(p, "%d of its %d corners are more than %.1f pixels from their predicted places",
                                  strays, fit->view[view].count, limit);
     }
     return WEFT_OK;

@@ -109,8 +109,8 @@ static weft_code warn_of_photographs(weft_lens_report *r, weft_error *error)
                                 tilt_deg));
     if (r->reach < least_reach)
         WEFT_TRY(weft_lines_add(&r->warnings, error,
-                                "no corner of the board is farther out than %.0f %% of the way to the corners of the "
-                                "photograph: what lies beyond is a guess; fill the frame",
+                                "the corners of the board reach only %.0f %% of the way to the corners of the "
+                                "photograph; the lens is guessed beyond; fill the frame",
                                 100 * r->reach));
     return WEFT_OK;
 }

@@ -165,7 +165,7 @@ static weft_code read_photograph(const weft_board *board, weft_board_photograph 
     weft_image_free(&image);
     int least = weft_board_point_limit(board) < 8 ? 4 : 8;
     if (code == WEFT_OK && p->count == 0)
-        weft_board_leave_out(p, "no board is seen in it: there is none, too little of it, or it is blurred");
+        weft_board_leave_out(p, "no board was found in it: it is missing, partly hidden, or blurred");
     else if (code == WEFT_OK && p->count < least)
         weft_board_leave_out(p, "only %d corners of the board are seen, not %d", p->count, least);
     return code;

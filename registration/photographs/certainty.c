@@ -190,12 +190,11 @@ static weft_code note_tone(weft_photograph_set *set, weft_error *error)
     const double most = 0.05;
     if (!(set->lamps.dark_error > most))
         return WEFT_OK;
-    return weft_lines_add(
-        &set->notes, error,
-        "dark cloth, a tenth as bright as the paper, may be off by %.0f %% (a standard error), bright "
-        "cloth by less: the tone curve is known no better. Next time take four photographs twice, the "
-        "second two stops darker, or use raw files",
-        100 * set->lamps.dark_error);
+    return weft_lines_add(&set->notes, error,
+                          "the tone curve is uncertain: cloth a tenth as bright as the paper may be off by %.0f %% "
+                          "(standard error), brighter cloth by less. Next time take four photographs twice, the "
+                          "second two stops darker, or use raw files",
+                          100 * set->lamps.dark_error);
 }
 
 weft_code weft_photographs_note(weft_photograph_set *set, weft_error *error)

@@ -149,6 +149,6 @@ weft_code weft_corners_find(const weft_target *target, const weft_light_values *
                  photograph->marker_count, WEFT_SHEET_MARKER_COUNT, fault_of(values));
     else if (photograph->corner_count < 4 * fewest_markers)
         snprintf(photograph->remark, sizeof photograph->remark,
-                 "its markers lie otherwise than on the target: it is another print, or the sheet is bent");
+                 "its markers do not match the target: it is another print, or the sheet is bent");
     return WEFT_OK;
 }

@@ -190,11 +190,10 @@ static int leave_out(weft_photographs_photograph *photograph, int count, const w
         weft_photographs_photograph *p = &photograph[i];
         if (!weft_photographs_used(p) || p->corner_rms_px <= limit)
             continue;
-        snprintf(
-            p->remark, sizeof p->remark,
-            "its markers lie %.1f pixels off (median of all: %.2f): the sheet is bent, or it moved, or the lens was "
-            "another",
-            p->corner_rms_px, median);
+        snprintf(p->remark, sizeof p->remark,
+                 "its markers lie %.1f pixels off (median of all: %.2f): the sheet was bent or moved, or another lens "
+                 "was used",
+                 p->corner_rms_px, median);
         left_out++;
     }
     return left_out;

@@ -24,7 +24,7 @@ static weft_code add_frame(const weft_session *session, int frame, uint16_t *sam
     size_t count = value_count(session);
     weft_session_frame_path(session, frame, path, sizeof path);
     if (!session->frame[frame].taken)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not taken: run the same weft capture again", path);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is missing: run the same weft capture again", path);
     WEFT_TRY(weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, samples, error));
     for (size_t i = 0; i < count; i++)
         sum[i] += samples[i];

@@ -91,8 +91,8 @@ static void commas_and_semicolons_separate_too(void **state)
     assert_light(&list, "my stone, left.jpg", 0, -0.6, 0.8);
     assert_light(&list, "b.jpg", 0, 0, 1);
     weft_light_list_free(&list);
-    assert_refused("decimal.lp", "1\na.jpg 0,6 0,0 0,8\n", "decimal.lp:2: not a name and three numbers");
-    assert_refused("decimal.lp", "1\na.jpg;0,6;0,0;0,8\n", "decimal.lp:2: not a name and three numbers");
+    assert_refused("decimal.lp", "1\na.jpg 0,6 0,0 0,8\n", "decimal.lp:2: expected a name and three numbers");
+    assert_refused("decimal.lp", "1\na.jpg;0,6;0,0;0,8\n", "decimal.lp:2: expected a name and three numbers");
     assert_refused("commas.lp", "1\na.jpg,1,0\n", "commas.lp:2: not a name");
     assert_refused("commas.lp", "1\n,1,0,0\n", "commas.lp:2: no name");
 }
@@ -100,7 +100,7 @@ static void commas_and_semicolons_separate_too(void **state)
 static void a_bad_lp_file_is_refused_with_its_line(void **state)
 {
     (void)state;
-    assert_refused("bad.lp", "2\na.jpg 1 0 0\nb.jpg 1 0\n", "bad.lp:3: not a name and three numbers");
+    assert_refused("bad.lp", "2\na.jpg 1 0 0\nb.jpg 1 0\n", "bad.lp:3: expected a name and three numbers");
     assert_refused("bad.lp", "1\na.jpg 1 0 zero\n", "bad.lp:2: not a name");
     assert_refused("bad.lp", "1\na.jpg 1 0 nan\n", "bad.lp:2: not a name");
     assert_refused("bad.lp", "1\n1 0 0\n", "bad.lp:2: no name");

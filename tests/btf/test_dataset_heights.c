@@ -166,7 +166,7 @@ static void damaged_heights_are_named(void **state)
     replace_heights(open_copy(), 2, (hsize_t[]){16 * HEIGHT, 16 * WIDTH}, 0);
     assert_refused("80 x 64 heights");
     replace_heights(open_copy(), 1, (hsize_t[]){PLACES}, 0);
-    assert_refused("'height' must be numbers in 2 dimensions, has 1");
+    assert_refused("'height' must be a numeric array of 2 dimensions; it has 1");
     replace_heights(open_copy(), 2, (hsize_t[]){2 * HEIGHT, 2 * WIDTH}, NAN);
     assert_refused("height (3, 0) is nan mm");
     replace_heights(open_copy(), 2, (hsize_t[]){2 * HEIGHT, 2 * WIDTH}, -1e3f);

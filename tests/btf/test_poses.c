@@ -79,7 +79,7 @@ static void what_cannot_be_is_refused(void **state)
     (void)state;
     assert_refused("\"weft_poses\": 1", "\"weft_lens\": 1", "holds no poses of a rig");
     assert_refused("\"weft_poses\": 1", "\"weft_poses\": 2", "poses of version 2");
-    assert_refused("\"fx\": 1920.0", "\"fx\": -1920.0", "'camera' is of no lens");
+    assert_refused("\"fx\": 1920.0", "\"fx\": -1920.0", "'camera' does not describe a lens");
     assert_refused("\"home\"", "\"house\"", "'home' is no pose");
     assert_refused("\"joints\"", "\"axes\"", "is no list of 3 joints");
     assert_refused("\"camera phi\"", "\"camera theta\"", "the joint 'camera phi'");
@@ -100,7 +100,7 @@ static void what_is_no_number_is_named(void **state)
     (void)state;
     weft_poses_file file = example();
     file.held_out_rms_px = INFINITY;
-    assert_not_written(&file, "'held_out_rms_px' came out infinite");
+    assert_not_written(&file, "'held_out_rms_px' is not a finite number");
     file = example();
     file.error[2].wobble_rad = NAN;
     assert_not_written(&file, "'joints' came out");

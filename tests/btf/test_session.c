@@ -138,7 +138,7 @@ static void assert_second_pose_is_refused(weft_motion second)
     written.pose = pose;
     assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
     assert_int_equal(weft_session_open(folder, &read, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "session.json': 'pose' of shot 1 of the plan cannot be"));
+    assert_non_null(strstr(error.message, "session.json': 'pose' of shot 1 of the plan is invalid"));
 }
 
 static void poses_that_cannot_be_are_refused(void **state)

@@ -59,7 +59,7 @@ done <<'TABLE'
 1|'good' is a folder|compress good -o out
 2|not 'many'|compress good.btf.h5 --components many -o out
 2|not a regular file|compress good.btf.h5 -o /dev/full
-2|one too many|compress good.weft good.btf.h5 -o out
+2|unexpected argument|compress good.weft good.btf.h5 -o out
 2|would overwrite|compress good.btf.h5 -o good.btf.h5
 3|'empty' is a file|compress good.btf.h5 -o empty/out
 1|'picture.png' is a picture: NAME.weft belongs|compare good.btf.h5 picture.png -o out
@@ -77,12 +77,12 @@ done <<'TABLE'
 1|'knit.stitch' is a stitch: START.wv belongs|fit-weave good.btf.h5 --weave knit.stitch -o out
 1|'good.weft' is a material|tradeoff good.weft -o out
 1|'good.btf.h5' is a dataset: SESSION belongs|register good.btf.h5 -o out
-1|'folder' is no session|register folder -o out
+1|'folder' is not a session|register folder -o out
 1|'folder' is a folder, but no session|info folder
-1|'folder' is no session|calibrate folder -o out
+1|'folder' is not a session|calibrate folder -o out
 1|left/cameras.json|register left -o out
 2|WxH|register good --size 5 -o out
-2|one too many|register good folder -o out
+2|unexpected argument|register good folder -o out
 1|'good.btf.h5' is a dataset: FOLDER belongs|photographs good.btf.h5 -o out
 1|holds no photograph|photographs folder -o out
 1|can be read|photographs empty_files -o out

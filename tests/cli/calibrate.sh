@@ -26,7 +26,7 @@ import json, re, sys
 events = [json.loads(line) for line in open(sys.argv[1])]
 notes = "\n".join(e["text"] for e in events if e["event"] == "note")
 for words in ("left out tv000_pv000/", "left out tv020_pv030/", "the target", "9 of 11 shots",
-              "expected before the target is looked at, 11 poses", "cannot see the axes of the light"):
+              "predicted before registration refines them, 11 poses", "cannot see the axes of the light"):
     assert words in notes, (words, notes)
 poses = [e for e in events if e["event"] == "poses"][0]
 known = re.search(r"lines are known to (\S+) degrees by these 9 shots; to (\S+) by 18, to (\S+) by 36 like them", notes)
@@ -72,7 +72,7 @@ pose = {(night, camera): json.load(open(f"{night}/camera{camera}/session.json"))
         for night in ("alike", "pair") for camera in (1, 2)}
 assert pose["pair", 1] == pose["alike", 1] and pose["pair", 2] != pose["alike", 2], pose
 PYTHON
-expect_error 1 "one of them belongs here, as 'pair/camera1'" calibrate pair -o no.poses.json
+expect_error 1 "name one of them, such as 'pair/camera1'" calibrate pair -o no.poses.json
 expect_error 1 "'poses' is a folder, and there is one camera" capture --rig off.json --sample "$weave" --plan one.csv --poses poses -o no
 
 # Poses that are not of this rig, whatever is asked of it.

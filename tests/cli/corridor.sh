@@ -65,7 +65,7 @@ sed 's/psi = 30/psi = 38/; s/umax = 30/umax = 24/' "$assets/weaves/wool_gabardin
 expect_says "median" fit-weave cloth.btf.h5 --weave start.wv -o fitted.wv
 sed -n 's|.*percentile: \([0-9.]*\) % / .* before, \([0-9.]*\) % .*|\1 \2|p' out.log | awk '{ exit !($2 < 0.5 * $1) }' ||
     fail "the fitted weave is no better than its start"
-grep -q "sample: lies askew by\|sample: taken as lying straight, " out.log || fail "fit-weave does not say how the sample lies"
+grep -q "sample: rotated by\|sample: assumed to lie straight; " out.log || fail "fit-weave does not say how the sample lies"
 grep -q "Fitted to the mean of 32 images" fitted.wv || fail "the fitted weave does not say what it was fitted to"
 error_of_analytic() {
     sed -n "s/^analytic, mean BRDF: relative RMSE \([0-9.]*\) %,.*/\1/p" out.log

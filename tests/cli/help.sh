@@ -54,7 +54,7 @@ expect_error 1 "one.jpg" colour one.jpg -o no.json
 expect_error 2 "needs SESSION and -o POSES.json" calibrate -o no.json
 expect_error 2 "one session at a time" calibrate one two -o no.json
 expect_error 2 "would overwrite" calibrate session --plan same.csv -o ./same.csv
-expect_error 2 "--poses is of the virtual rig alone" capture --rig my.conf --poses rig.poses.json --sample scarf -o no
+expect_error 2 "--poses needs the virtual rig" capture --rig my.conf --poses rig.poses.json --sample scarf -o no
 expect_error 1 "there is no 'one.jpg'" lens one.jpg two.jpg -o no.json --board plate:50
 expect_error 2 "--size needs WxH" register session -o no.btf.h5 --size 64
 expect_error 2 "--tiles needs two numbers above 0" render --weave cloth.wv --tiles 0,3 -o no.png

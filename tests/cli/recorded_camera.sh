@@ -25,5 +25,5 @@ expect() {
 weft=$1
 expect "cannot release the shutter of a Canon PowerShot SX200 IS" umockdev-run -d "$recorded.noint.umockdev" \
     -i "/dev/bus/usb/001/011=$recorded.libgphoto2-2.5.30.ioctl"
-expect "none is connected" umockdev-run
+expect "finds no camera" umockdev-run
 echo sound

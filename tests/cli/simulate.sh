@@ -44,7 +44,7 @@ expect_says "near light, compressed against truth: relative RMSE\|no truth: " co
 expect_page report
 grep -q "<h2>Truth</h2>" report/index.html || fail "the page has no truth"
 expect_error 1 absent.stitch compare open.btf.h5 open.weft --truth absent.stitch -o no
-expect_error 1 "is a weave: FILE.stitch belongs in its place" compare open.btf.h5 open.weft --truth "$assets/weaves/cotton_twill.wv" -o no
+expect_error 1 "is a weave; FILE.stitch is needed here" compare open.btf.h5 open.weft --truth "$assets/weaves/cotton_twill.wv" -o no
 expect_error 2 "paths" compare open.btf.h5 open.weft --truth coarse.stitch --paths 0 -o no
 [ ! -e no ] || fail "a report without truth was begun"
 

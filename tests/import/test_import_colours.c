@@ -223,7 +223,7 @@ static void a_profile_that_is_not_read_is_named(void **state)
     put_profile(&folder, &profile);
     outcome said = import_as(&folder, WEFT_IMPORT_AS_SAID);
     assert_memory_equal(said.rgb, plain.rgb, sizeof plain.rgb);
-    assert_note(&said, "its ICC profile 'scanner' is not one of curves and primaries; taken as sRGB");
+    assert_note(&said, "its ICC profile 'scanner' does not consist of curves and primaries; taken as sRGB");
     folder_remove(&folder);
 }
 
@@ -266,7 +266,7 @@ static void exr_files_that_may_be_xyz_are_asked_about(void **state)
     put_flat(&folder, exr_name, red_cloth);
     outcome said = import_as(&folder, WEFT_IMPORT_AS_SAID);
     assert_float_equal(said.rgb[0], red_cloth[0], 0.001);
-    assert_note(&said, "if they are XYZ say --colours xyz");
+    assert_note(&said, "if they are XYZ, pass --colours xyz");
     outcome told = import_as(&folder, WEFT_IMPORT_SRGB);
     assert_memory_equal(told.rgb, said.rgb, sizeof said.rgb);
     assert_null(strstr(told.notes, "XYZ"));
@@ -381,7 +381,9 @@ static void sixteen_bits_may_be_linear(void **state)
     assert_int_equal(weft_snapshot_write(path, &image, &notes, NULL), WEFT_OK);
     weft_image_free(&image);
     outcome said = import_as(&folder, WEFT_IMPORT_AS_SAID), told = import_as(&folder, WEFT_IMPORT_SRGB);
-    assert_note(&said, "it has 16 bits and says no tone curve: if it is linear say --linear; taken as sRGB");
+    assert_note(
+        &said,
+        "it has 16 bits and does not state its tone curve; if its values are linear, pass --linear; taken as sRGB");
     assert_null(strstr(told.notes, "--linear"));
     weft_import_options options = weft_import_defaults();
     options.linear = true;

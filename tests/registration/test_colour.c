@@ -285,7 +285,7 @@ static void a_tone_curve_is_not_mistaken(void **state)
     const weft_camera_notes notes = {"Test", "Chart", "2026:01:01 00:00:00", 1, 0.01, 4, 100, 50, 50};
     assert_int_equal(weft_snapshot_write("linear.tif", &image, &notes, NULL), WEFT_OK);
     weft_image_free(&image);
-    assert_refused("linear.tif", "the values are linear: say --linear");
+    assert_refused("linear.tif", "so the values are linear; pass --linear");
     weft_colour_report report = calibrate_as(true, "linear.tif", 0);
     weft_colour_report_free(&report);
     chart_picture_write_jpeg(&picture, "curved.jpg");

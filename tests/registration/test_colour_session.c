@@ -263,7 +263,7 @@ static void cameras_of_one_session_meet_in_one_colour_space(void **state)
     rename("chart0", "charts/left");
     rename("chart1", "charts/right");
     expect_ok(weft_make_folder("colours", &error), &error);
-    expect_weft("colour charts -o no.json", 1, "one of them belongs here, as 'charts/left'");
+    expect_weft("colour charts -o no.json", 1, "name one of them, such as 'charts/left'");
     link("colour0.json", "colours/left.json");
     link("colour1.json", "colours/right.json");
     list_cameras("night");
@@ -272,7 +272,7 @@ static void cameras_of_one_session_meet_in_one_colour_space(void **state)
     expect_weft("register night -o no.btf.h5 --size 8x8", 1, "do not see the same colours");
     expect_weft("register night -o no.btf.h5 --size 8x8 --colour colours/left.json", 1, "do not see the same colours");
     expect_weft("register night/left -o no.btf.h5 --size 8x8 --colour colours", 1,
-                "there is one camera: name its file");
+                "there is one camera, so name its file");
     expect_weft("register night -o no.btf.h5 --size 8x8 --colour charts", 1, "charts/left.json");
     assert_true(access("no.json", F_OK) != 0 && access("no.btf.h5", F_OK) != 0);
     expect_weft("register night -o after.btf.h5 --size 8x8 --colour colours", 0, "colours: linear sRGB");

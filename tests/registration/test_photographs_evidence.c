@@ -340,7 +340,7 @@ static void a_list_of_something_else_is_refused(void **state)
     row[0].file = other;
     assert_int_equal(weft_listed_check(&list, p, ROWS, &error), WEFT_BAD_INPUT);
     assert_non_null(
-        strstr(error.message, "'rows.lp' lists none of the photographs: it has 'z.jpg', the folder '0.jpg'"));
+        strstr(error.message, "'rows.lp' lists none of the photographs; it names 'z.jpg', the folder holds '0.jpg'"));
 }
 
 int test_photographs_evidence(void)
