@@ -36,10 +36,16 @@ static uint32_t fold(uint32_t hash, int64_t value)
     return mixed(hash + (uint32_t)value);
 }
 
-/* In (0, 1): 24 bits, so that single precision holds it exactly. */
+/* In (0, 1): the middles of 2^24 parts. Single precision holds those of the lower half exactly. */
 static weft_real unit_interval(uint32_t hash)
 {
     return ((weft_real)(hash >> 8) + (weft_real)0.5) / (weft_real)16777216;
+}
+
+/* -log of unit_interval. Next to 1 it is about the distance from 1, which is exact where the number is not. */
+static weft_real minus_log(uint32_t hash)
+{
+    return hash >> 31 ? -log1p(-unit_interval(~hash)) : -log(unit_interval(hash));
 }
 
 /* Exponentially distributed with mean 1, constant on each of fineness x fineness rectangles of a segment.
@@ -51,7 +57,7 @@ static weft_real intensity_noise(uint64_t seed, segment_place place, weft_real f
     hash = fold(fold(hash, place.quarter_x), place.quarter_y);
     hash = fold(hash, place.warp);
     hash = fold(fold(hash, (int64_t)floor(across * fineness)), (int64_t)floor(along * fineness));
-    return -log(unit_interval(hash));
+    return minus_log(hash);
 }
 
 /* Floor of quarters / 4. */
