@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Below these a value has no relative accuracy, as it is no normal number or about to become one. */
-static const double least_single = 1e-30, least_double = 1e-290;
+/* Below these a value has no relative accuracy: it or one of its factors is no normal number, or almost none. */
+static const double least_single = 1e-24, least_double = 1e-290;
 
 /* An error larger than this, or than what is claimed, may be a jump of the function. */
 static const double suspicious = 1e-3;
@@ -29,24 +29,33 @@ static double difference(numerics_value a, numerics_value b)
 
 /* ---- Arguments moved by rounding ---- */
 
-/* Each number up or down by a relative amount; the bits of `pattern` choose (its multiples spread them). */
-static void move_arguments(const double *from, int count, unsigned pattern, double amount, double *to)
+/* Each number up or down by a relative amount; `ups` has a bit for each. */
+static void move_arguments(const double *from, int count, uint64_t ups, double amount, double *to)
 {
-    uint64_t bits = (pattern + 1) * 0x9e3779b97f4a7c15u;
-    bits ^= bits >> 29;
     for (int i = 0; i < count; i++)
-        to[i] = from[i] * (bits >> i & 1 ? 1 + amount : 1 - amount);
+        to[i] = from[i] * (ups >> i & 1 ? 1 + amount : 1 - amount);
+}
+
+/* The arguments that go up in one of PATTERNS moves, by the binary digits of their places. Any two arguments go the
+ * same way in one move and opposite ways in another: the effects of no two cancel in all. */
+enum { PATTERNS = 6 };
+_Static_assert(NUMERICS_MAX_ARGUMENTS <= 1 << (PATTERNS - 1), "every argument has its own pattern");
+static uint64_t ups_by_place(int pattern)
+{
+    uint64_t ups = 0;
+    for (unsigned i = 0; i < NUMERICS_MAX_ARGUMENTS; i++)
+        ups |= (uint64_t)(i >> pattern & 1) << i;
+    return ups;
 }
 
 /* What one rounding of each argument does to the exact value: the largest change over a few patterns of signs. */
 static double rounding_spread(numerics_id id, const double *argument, int count, double roundoff, numerics_value value)
 {
-    enum { PATTERNS = 6 };
     double moved[NUMERICS_MAX_ARGUMENTS], spread = 0;
     /* A double next to the argument is its neighbour: a relative change of one roundoff may be lost. */
     double amount = roundoff < DBL_EPSILON ? DBL_EPSILON : roundoff;
-    for (unsigned i = 0; i < PATTERNS; i++) {
-        move_arguments(argument, count, i, amount, moved);
+    for (int i = 0; i < PATTERNS; i++) {
+        move_arguments(argument, count, ups_by_place(i), amount, moved);
         spread = fmax(spread, difference(exact(id, moved), value));
     }
     return spread;
@@ -75,15 +84,21 @@ static bool jumps_between(numerics_id id, const double *a, const double *b, int 
     return difference(at_low, at_high) > whole / 2;
 }
 
+static uint64_t random_ups(unsigned seed)
+{
+    uint64_t bits = (seed + 1) * 0x9e3779b97f4a7c15u;
+    return bits ^ bits >> 29;
+}
+
 /* Whether the value is the exact one of the other side of a jump that lies within rounding of the arguments. */
 static bool is_other_side(numerics_id id, const double *argument, int count, double roundoff, numerics_value value,
                           double error)
 {
-    enum { PATTERNS = 24 };
+    enum { TRIES = 24 };
     double moved[NUMERICS_MAX_ARGUMENTS];
-    for (unsigned i = 0; i < PATTERNS; i++) {
+    for (unsigned i = 0; i < TRIES; i++) {
         double amount = roundoff * (i % 3 == 0 ? 2 : i % 3 == 1 ? 8 : 32);
-        move_arguments(argument, count, i, amount, moved);
+        move_arguments(argument, count, random_ups(i), amount, moved);
         numerics_value there = exact(id, moved);
         if (difference(there, value) < error / 2 && jumps_between(id, argument, moved, count))
             return true;

@@ -120,7 +120,8 @@ bool numerics_tables_begin(void)
         weft_real code = (weft_real)(next_of(&state) >> 16 & 255) / 255;
         fixed.value[i].r = code * code;
     }
-    fixed.material = (weft_material){.lobe_count = 1,
+    fixed.material = (weft_material){.has_lobes = true,
+                                     .lobe_count = 1,
                                      .level_count = LEVELS,
                                      .view_count = DIRECTIONS,
                                      .light_count = DIRECTIONS,
