@@ -68,7 +68,7 @@ static const numerics_claim claims[NUMERICS_MODELS] = {
     [NUMERICS_WEAVE_BRDF] =
         {"Weave: BRDF with noise", 2e-11, 0.1, 0, 0, 20, 20, 1,
          "as the texture, weakened by the diffuse term; cells of noise and of the pattern are jumps"},
-    [NUMERICS_WEAVE_MEAN] = {"Weave: mean over the tile", 5e-09, 1e-05, 0, 0, 0, 5, 100,
+    [NUMERICS_WEAVE_MEAN] = {"Weave: mean over the tile", 3e-08, 1e-05, 0, 0, 0, 5, 100,
                              "as the integrals, weakened by the diffuse term"},
     [NUMERICS_STORED_HALF] = {"A number in half", 0.001, 0, 0, 0, 0, 0, 1, ""},
     [NUMERICS_STORED_8_BITS] = {"T or S in 8 bits", 0.2, 0, 0, 0, 0, 0, 1, ""},
