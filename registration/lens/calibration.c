@@ -118,7 +118,7 @@ enum { MODELS = 6, BORDER_STEPS = 16, SIMPLEST = WEFT_FIX_K2 | WEFT_FIX_TANGENTI
 
 /* What is fixed at 0, from nothing to all but the radial term that every lens has. */
 static const unsigned models[MODELS] = {
-    0, WEFT_FIX_K2, WEFT_FIX_K3, WEFT_FIX_K2 | WEFT_FIX_K3, WEFT_FIX_TANGENTIAL | WEFT_FIX_K3, SIMPLEST};
+    0, WEFT_FIX_TANGENTIAL, WEFT_FIX_K3, WEFT_FIX_TANGENTIAL | WEFT_FIX_K3, WEFT_FIX_K2 | WEFT_FIX_K3, SIMPLEST};
 
 /* Akaike's criterion for few residuals (Hurvich and Tsai 1989): they are Gaussian noise of unknown width, and poses are
  * parameters, too. */

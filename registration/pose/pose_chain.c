@@ -39,7 +39,7 @@ static bool acceptable(const weft_refinement *refinement, double shift_mm, const
     else if (!refinement->converged)
         snprintf(remark, size, "the refinement did not settle in %d steps", refinement->iterations);
     else if (!(shift_mm <= limits->tolerance_mm))
-        snprintf(remark, size, "found %.1f mm from where the rig predicted it, over %.1f mm", shift_mm,
+        snprintf(remark, size, "found %.1f mm from its place in the rig file; at most %.1f mm is accepted", shift_mm,
                  limits->tolerance_mm);
     else
         return true;

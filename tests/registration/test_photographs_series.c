@@ -287,7 +287,7 @@ static void the_darker_of_a_pair_is_no_image(void **state)
         assert_int_equal(weft_photographs_used(&photograph[i]), used[i]);
     assert_true(photograph[0].is_darker_of_pair && photograph[4].is_darker_of_pair &&
                 !photograph[3].is_darker_of_pair && !photograph[1].is_darker_of_pair);
-    assert_non_null(strstr(photograph[4].remark, "it is 'a', darker"));
+    assert_non_null(strstr(photograph[4].remark, "it is 'a' with less exposure"));
     assert_int_equal(weft_photographs_darker_of_pair(&set, 2), 0);
     assert_int_equal(weft_photographs_darker_of_pair(&set, 0), 4);
     assert_int_equal(weft_photographs_darker_of_pair(&set, 4), -1);

@@ -33,13 +33,13 @@ static int leave(void **state)
     return 0;
 }
 
-/* Photographs the plate at a tilt; the true pose and the promised homography come back. */
-static float *photograph(const plate_scene *what, double tilt_deg, weft_pose *pose, weft_homography *promised)
+/* Photographs the plate at a tilt; the true pose and the expected homography come back. */
+static float *photograph(const plate_scene *what, double tilt_deg, weft_pose *pose, weft_homography *expected)
 {
     weft_angles view = {weft_rad_of_deg(tilt_deg), 0.3 + tilt_deg};
     weft_pose nominal = weft_pose_of_view(view, distance_mm);
     *pose = plate_jittered_pose(view, distance_mm, (unsigned)tilt_deg + 1);
-    *promised = weft_homography_of_pose(&camera, &nominal);
+    *expected = weft_homography_of_pose(&camera, &nominal);
     float *picture = plate_photograph(what, &camera, pose, 9);
     for (int i = 0; i < SIZE * SIZE; i++)
         picture[i] *= sight.inverse_vignetting[i];
@@ -54,11 +54,11 @@ static double error_texels(const weft_pose *pose, const weft_homography *found)
 static weft_view_pose find(const plate_scene *what, double tilt_deg, double *error)
 {
     weft_pose pose;
-    weft_homography promised;
-    float *picture = photograph(what, tilt_deg, &pose, &promised);
+    weft_homography expected;
+    float *picture = photograph(what, tilt_deg, &pose, &expected);
     weft_view_pose found;
     assert_int_equal(
-        weft_pose_find(&sight, &what->target, picture, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL),
+        weft_pose_find(&sight, &what->target, picture, &expected, (weft_point_spread){0, 0}, &limits, &found, NULL),
         WEFT_OK);
     *error = error_texels(&pose, &found.homography);
     free(picture);
@@ -94,10 +94,10 @@ static void markers_alone_come_within_half_a_texel(void **state)
     (void)state;
     for (int tilt = 0; tilt <= 75; tilt += 75) {
         weft_pose pose;
-        weft_homography promised;
+        weft_homography expected;
         weft_marker_start start;
-        float *picture = photograph(&scene, tilt, &pose, &promised);
-        assert_int_equal(weft_markers_locate(&sight, &scene.target, picture, &promised, &start, NULL), WEFT_OK);
+        float *picture = photograph(&scene, tilt, &pose, &expected);
+        assert_int_equal(weft_markers_locate(&sight, &scene.target, picture, &expected, &start, NULL), WEFT_OK);
         assert_int_equal(start.found, WEFT_TARGET_MARKER_COUNT);
         assert_true(start.corners >= 24);
         assert_true(error_texels(&pose, &start.homography) < 0.5);
@@ -109,9 +109,9 @@ static void the_rigs_promise_is_start_enough_without_markers(void **state)
 {
     (void)state;
     weft_pose pose;
-    weft_homography promised;
-    float *picture = photograph(&scene, 45, &pose, &promised);
-    weft_refinement refinement = {.homography = promised};
+    weft_homography expected;
+    float *picture = photograph(&scene, 45, &pose, &expected);
+    weft_refinement refinement = {.homography = expected};
     const double blur[] = {4, 1.5, 0};
     for (int i = 0; i < 3; i++)
         assert_int_equal(weft_refinement_run(&sight, picture, blur[i], &refinement, NULL), WEFT_OK);
@@ -146,29 +146,29 @@ static void darkness_fails(void **state)
 {
     (void)state;
     weft_pose nominal = weft_pose_of_view((weft_angles){0, 0}, distance_mm);
-    weft_homography promised = weft_homography_of_pose(&camera, &nominal);
+    weft_homography expected = weft_homography_of_pose(&camera, &nominal);
     weft_view_pose found;
     float *black = calloc(SIZE * SIZE, sizeof *black);
     assert_int_equal(
-        weft_pose_find(&sight, &scene.target, black, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL),
+        weft_pose_find(&sight, &scene.target, black, &expected, (weft_point_spread){0, 0}, &limits, &found, NULL),
         WEFT_OK);
     assert_int_equal(found.source, WEFT_POSE_FAILED);
     free(black);
 }
 
-static void a_plate_far_from_where_the_rig_promised_it_is_not_believed(void **state)
+static void a_plate_far_from_where_the_rig_expects_it_is_not_believed(void **state)
 {
     (void)state;
     weft_pose pose;
-    weft_homography promised;
-    float *picture = photograph(&scene, 15, &pose, &promised);
+    weft_homography expected;
+    float *picture = photograph(&scene, 15, &pose, &expected);
     weft_pose_limits narrow = {0.001, 0.8};
     weft_view_pose found;
     assert_int_equal(
-        weft_pose_find(&sight, &scene.target, picture, &promised, (weft_point_spread){0, 0}, &narrow, &found, NULL),
+        weft_pose_find(&sight, &scene.target, picture, &expected, (weft_point_spread){0, 0}, &narrow, &found, NULL),
         WEFT_OK);
     assert_int_equal(found.source, WEFT_POSE_FAILED);
-    assert_non_null(strstr(found.remark, "promised"));
+    assert_non_null(strstr(found.remark, "its place in the rig file"));
     free(picture);
 }
 
@@ -182,7 +182,7 @@ int test_pose(void)
         cmocka_unit_test(a_plate_covered_in_part_is_found_all_the_same),
         cmocka_unit_test(a_covered_plate_fails_and_says_why),
         cmocka_unit_test(darkness_fails),
-        cmocka_unit_test(a_plate_far_from_where_the_rig_promised_it_is_not_believed),
+        cmocka_unit_test(a_plate_far_from_where_the_rig_expects_it_is_not_believed),
     };
     return cmocka_run_group_tests(tests, look, leave);
 }

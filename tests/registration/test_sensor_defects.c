@@ -198,7 +198,7 @@ static void a_frame_that_is_not_there_is_named(void **state)
     weft_sensor_defects_free(&faults);
     session.frame[3].taken = true;
     assert_int_equal(remove("corrected/sensor/flat_016.tif"), 0);
-    assert_int_equal(weft_sensor_defects_find(&session, &faults, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_sensor_defects_find(&session, &faults, &error), WEFT_MISSING);
     assert_non_null(strstr(error.message, "corrected/sensor/flat_016.tif"));
     weft_sensor_defects_free(&faults);
     weft_session_free(&session);
