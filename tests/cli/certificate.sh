@@ -98,5 +98,5 @@ echo "lx,ly,lz,vx,vy,vz
 expect_error 1 "no columns u and v" eval grid.weft --at means.csv --interval
 expect_error 1 "has no certificate" eval plain.weft --at places.csv --interval
 expect_error 1 "only a .weft has a certificate" eval grid.btf.h5 --at places.csv --interval
-expect_error 2 "is of its components" eval grid.weft --at places.csv --interval --lobes
+expect_error 2 "has components alone, no lobes" eval grid.weft --at places.csv --interval --lobes
 echo "$passed commands"

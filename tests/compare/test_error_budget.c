@@ -267,9 +267,9 @@ static void coarser_storage_shows_in_its_part_alone(void **state)
     assert_float_equal(coarse.own[WEFT_SOURCE_STORAGE] / sound.own[WEFT_SOURCE_STORAGE], 7, 1.5);
     drop_bits("stored.weft", 5, "coarser.weft");
     coarse = ask("exact.btf.h5", "fine.weft", "coarser.weft");
-    assert_true(coarse.stratum[WEFT_SOURCE_STORAGE].low > sound.part[WEFT_SOURCE_STORAGE].high);
+    assert_true(coarse.part[WEFT_SOURCE_STORAGE].low > sound.part[WEFT_SOURCE_STORAGE].high);
     for (int part = 0; part < WEFT_SOURCE_STORAGE; part++)
-        assert_float_equal(coarse.stratum[part].value, sound.part[part].value, 0);
+        assert_float_equal(coarse.part[part].value, sound.part[part].value, 0);
 }
 
 static void answers_do_not_depend_on_threads(void **state)
