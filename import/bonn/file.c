@@ -43,7 +43,7 @@ static weft_code read_signature(weft_bonn_reader *reader, const struct signature
     *signature = signature_of(head);
     if (!*signature)
         return weft_fail(error, WEFT_NOT_SUPPORTED,
-                         "'%s' begins with '%s': supported are !DFMF08FC, !FMF06FC and !FMF12FCE", reader->path, head);
+                         "'%s' begins with '%s'; supported are !DFMF08FC, !FMF06FC and !FMF12FCE", reader->path, head);
     if ((*signature)->kind == NOT_READ)
         return weft_fail(error, WEFT_NOT_SUPPORTED, "'%s' holds %s; only DFMF and FMF are read", reader->path,
                          (*signature)->words);

@@ -133,7 +133,7 @@ static unsigned random_below(unsigned limit)
 
 /* ---- Faults ---- */
 
-/* What the issue asks for: one of twenty of 2000 moves goes wrong in some way; no pose is believed that is not taken.
+/* One of twenty of 2000 moves goes wrong in some way; no pose is believed that is not taken.
  */
 static void faults_in_two_thousand_moves_give_no_wrong_pose(void **state)
 {

@@ -24,7 +24,7 @@ expect_one_line() {
 expect_one_line 1 "'good.weft' is a material" compress good.weft -o out.weft
 expect_one_line 1 "'good.weft' is a material" compare good.weft good.btf.h5 -o report
 expect_one_line 1 "'good.weft' is a material" tile good.weft -o out.btf.h5
-expect_one_line 1 "'good.btf.h5' is no material" tile good.btf.h5 --blend -o out.weft
+expect_one_line 1 "'good.btf.h5' is not a material" tile good.btf.h5 --blend -o out.weft
 expect_one_line 1 "8 x 8 texels; at least 16 x 16" tile good.weft --blend -o out.weft
 expect_one_line 2 "--blend needs none" tile good.weft --blend --weave "$weave" -o out.weft
 expect_one_line 1 "'good.weft' is a material" render --raw good.weft -o out.png
@@ -50,7 +50,7 @@ while IFS='|' read -r code word arguments; do
     expect_one_line "$code" "$word" $arguments </dev/null
     expect_no_file out
 done <<'TABLE'
-1|'cloth.wv' is a weave: NAME.btf.h5 belongs|compress cloth.wv -o out
+1|'cloth.wv' is a weave; NAME.btf.h5 is needed here|compress cloth.wv -o out
 1|'knit.stitch' is a stitch|compress knit.stitch -o out
 1|'picture.png' is a picture|compress picture.png -o out
 1|'empty' is empty|compress empty -o out
@@ -62,43 +62,43 @@ done <<'TABLE'
 2|unexpected argument|compress good.weft good.btf.h5 -o out
 2|would overwrite|compress good.btf.h5 -o good.btf.h5
 3|'empty' is a file|compress good.btf.h5 -o empty/out
-1|'picture.png' is a picture: NAME.weft belongs|compare good.btf.h5 picture.png -o out
-1|'knit.stitch' is a stitch: CLOTH.wv or CLOTH.mc belongs|compare good.btf.h5 good.weft --weave knit.stitch -o out
-1|'cloth.wv' is a weave: FILE.stitch belongs|compare good.btf.h5 good.weft --truth cloth.wv -o out
+1|'picture.png' is a picture; NAME.weft is needed here|compare good.btf.h5 picture.png -o out
+1|'knit.stitch' is a stitch; CLOTH.wv or CLOTH.mc is needed here|compare good.btf.h5 good.weft --weave knit.stitch -o out
+1|'cloth.wv' is a weave; FILE.stitch is needed here|compare good.btf.h5 good.weft --truth cloth.wv -o out
 1|'good' is a folder|compare good good.weft -o out
 3|'/dev/full' is a file|compare good.btf.h5 good.weft -o /dev/full
 1|'good.btf.h5' is no prediction|compare good.btf.h5 good.weft --bard good.btf.h5 -o out
 2|needs --weave|compare good.btf.h5 good.weft --fit -o out
-1|'picture.png' is a picture: NAME.btf.h5 or NAME.weft belongs|tile picture.png -o out
+1|'picture.png' is a picture; NAME.btf.h5 or NAME.weft is needed here|tile picture.png -o out
 2|'out.btf.h5' is the name of a dataset|tile good.weft --blend -o out.btf.h5
 2|'out.weft' is the name of a material|tile good.btf.h5 -o out.weft
 1|'cloth.wv' is a weave|relief cloth.wv -o out
 1|'cloth.wv' is a weave|bard cloth.wv -o out
-1|'knit.stitch' is a stitch: START.wv belongs|fit-weave good.btf.h5 --weave knit.stitch -o out
+1|'knit.stitch' is a stitch; START.wv is needed here|fit-weave good.btf.h5 --weave knit.stitch -o out
 1|'good.weft' is a material|tradeoff good.weft -o out
-1|'good.btf.h5' is a dataset: SESSION belongs|register good.btf.h5 -o out
+1|'good.btf.h5' is a dataset; SESSION is needed here|register good.btf.h5 -o out
 1|'folder' is not a session|register folder -o out
 1|'folder' is a folder, but no session|info folder
 1|'folder' is not a session|calibrate folder -o out
 1|left/cameras.json|register left -o out
 2|WxH|register good --size 5 -o out
 2|unexpected argument|register good folder -o out
-1|'good.btf.h5' is a dataset: FOLDER belongs|photographs good.btf.h5 -o out
+1|'good.btf.h5' is a dataset; FOLDER is needed here|photographs good.btf.h5 -o out
 1|holds no photograph|photographs folder -o out
 1|can be read|photographs empty_files -o out
-1|'picture.png' is a picture: LENS.json belongs|photographs empty_files --lens picture.png -o out
-1|'cloth.wv' is a weave: CHART.jpg or SESSION belongs|colour cloth.wv -o out
+1|'picture.png' is a picture; LENS.json is needed here|photographs empty_files --lens picture.png -o out
+1|'cloth.wv' is a weave; CHART.jpg or SESSION is needed here|colour cloth.wv -o out
 1|not a folder of photographs|import picture.png -o out
 1|use `weft register`|import good -o out
 1|expected 'stitch'|simulate cloth.wv -o out
 2|--noise needs|simulate knit.stitch --noise -1 -o out
-1|'good.weft' is a material: CLOTH.wv or .stitch... belongs|truth good.weft -o out
+1|'good.weft' is a material; CLOTH.wv or .stitch... is needed here|truth good.weft -o out
 1|'picture.png' is not text|truth cloth.wv --plan picture.png -o out
 1|no file 'absent.wv'|truth cloth.wv absent.wv -o out
-1|'picture.png' is a picture: DIRECTIONS.csv belongs|eval good.weft --at picture.png
+1|'picture.png' is a picture; DIRECTIONS.csv is needed here|eval good.weft --at picture.png
 1|'empty' is empty|eval good.weft --at empty
-1|'cloth.wv' is a weave: PATH.csv belongs|render good.weft --path cloth.wv -o out-%d.png
-1|'cloth.wv' is a weave: PATH.csv belongs|prune good.weft --path cloth.wv -o out
+1|'cloth.wv' is a weave; PATH.csv is needed here|render good.weft --path cloth.wv -o out-%d.png
+1|'cloth.wv' is a weave; PATH.csv is needed here|prune good.weft --path cloth.wv -o out
 1|'picture.png' is no .weft file|render picture.png -o out.png
 1|'zero.png' is no .weft file|render zero.png -o out.png
 1|twice as wide as high|render good.weft --environment picture.png -o out.png
@@ -159,8 +159,8 @@ expect_no_file out.png
 # A window is not opened for what is not there: no display is needed to say so.
 expect_one_line 1 "no file 'absent'" play --raw absent
 expect_one_line 1 "no file 'absent.weft'" play absent.weft
-expect_one_line 1 "'good.weft' is a material: NAME.btf.h5 belongs" play --raw good.weft
-expect_one_line 1 "'good.weft' is a material: CLOTH.wv or CLOTH.mc belongs" play --weave good.weft
+expect_one_line 1 "'good.weft' is a material; NAME.btf.h5 is needed here" play --raw good.weft
+expect_one_line 1 "'good.weft' is a material; CLOTH.wv or CLOTH.mc is needed here" play --weave good.weft
 for file in picture.png plan.csv folder zero.png knit.stitch; do
     expect_one_line 1 "'$file' is no .weft file" play "$file"
 done

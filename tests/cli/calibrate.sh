@@ -63,7 +63,7 @@ poses = json.load(open("rig.poses.json"))
 poses["home"]["translation_mm"][0] += 1
 json.dump(poses, open("poses/camera2.json", "w"))
 PYTHON
-    expect_error 1 "'rig.poses.json' is no folder with 'camera1.json'" $two --poses rig.poses.json -o no
+    expect_error 1 "'rig.poses.json' must be a folder with one file for each camera, such as 'camera1.json'" $two --poses rig.poses.json -o no
     expect_ok $two --poses poses -o pair
 }
 "$python" - <<'PYTHON' || fail "the cameras do not have poses of their own"
@@ -73,7 +73,7 @@ pose = {(night, camera): json.load(open(f"{night}/camera{camera}/session.json"))
 assert pose["pair", 1] == pose["alike", 1] and pose["pair", 2] != pose["alike", 2], pose
 PYTHON
 expect_error 1 "name one of them, such as 'pair/camera1'" calibrate pair -o no.poses.json
-expect_error 1 "'poses' is a folder, and there is one camera" capture --rig off.json --sample "$weave" --plan one.csv --poses poses -o no
+expect_error 1 "'poses' is a folder; there is one camera" capture --rig off.json --sample "$weave" --plan one.csv --poses poses -o no
 
 # Poses that are not of this rig, whatever is asked of it.
 sed 's/176/96/g' off.json >small.json

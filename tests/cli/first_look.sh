@@ -95,14 +95,14 @@ grep -q "errors_of: components" out.log || fail "info does not say whose errors 
 
 # Of one photograph nothing can be left out, and nothing is said of what the others say.
 echo "30,0,0,0" | photograph alone "30%"
-grep -q "one photograph shows nothing of other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
+grep -q "one photograph says nothing about other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
 grep -q "by the others" out.log && fail "there are no others"
 # Paper that is brighter on the right: where it is repeated a line is seen.
 mkdir slope
 cp alone/directions.csv slope/directions.csv
 convert -size 16x16 -define gradient:angle=90 gradient:gray30-gray50 -depth 16 -type TrueColor "slope/30_0_0_0.png"
 expect_ok import slope -o slope.btf.h5
-expect_says "its ends do not meet: .*(.weft tile slope.weft --blend -o TILE.weft. makes them meet)" compress slope.btf.h5 -o slope.weft
+expect_says "does not tile: .*(.weft tile slope.weft --blend -o TILE.weft. mends that)" compress slope.btf.h5 -o slope.weft
 expect_says '{"event":"seam","pairs":32,"above_99th":0.5,' compress slope.btf.h5 --json -o slope.weft
 expect_ok tile slope.weft --blend -o tile.weft
 

@@ -31,7 +31,7 @@ size = os.path.getsize("knit.weft")
 assert abs(predicted["bytes"] / size - 1) < 0.02, (predicted["bytes"], size)
 assert abs(predicted["relative_rmse"] / measured["not_fitted"]["relative_rmse"] - 1) < 0.25, (predicted, measured)
 notes = [e["text"] for e in events if e["event"] == "note"]
-assert any(re.match(r"predicted [0-9.]+ MB, is [0-9.]+ MB", n) for n in notes), notes
+assert any(re.match(r"predicted [0-9.]+ MB, measured [0-9.]+ MB", n) for n in notes), notes
 kept = json.loads(open("out.log").read())["metadata"]["predicted"]
 assert kept == {k: v for k, v in predicted.items() if k != "event"}, kept
 assert ("frame_ms" in predicted) == bool(os.environ["fps"]) and predicted.get("frame_ms", 1) > 0, predicted
@@ -72,7 +72,7 @@ if "--error" in os.environ["asked"]:
 else:
     size = os.path.getsize("chosen.weft")
     assert size <= 40000 and abs(chosen["predicted_bytes"] / size - 1) < 0.05, (chosen, size)
-    assert any(re.match(r"predicted [0-9.]+ MB, is [0-9.]+ MB", e["text"]) for e in events if e["event"] == "note")
+    assert any(re.match(r"predicted [0-9.]+ MB, measured [0-9.]+ MB", e["text"]) for e in events if e["event"] == "note")
 PYTHON
     [ "$(ls -A | grep -c held-out)" = 0 ] || fail "compress $asked leaves files behind"
 done

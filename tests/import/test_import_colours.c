@@ -280,7 +280,7 @@ static void white_can_be_another_value_than_1(void **state)
     put_flat(&folder, exr_name, (const float[3]){40, 30, 20});
     outcome said = import_as(&folder, WEFT_IMPORT_SRGB);
     assert_float_equal(said.rgb[1], 30, 0.02);
-    assert_note(&said, "the samples are 30 in the mean");
+    assert_note(&said, "the mean sample is 30");
     weft_import_options options = weft_import_defaults();
     options.colours = WEFT_IMPORT_SRGB;
     options.white = 100;

@@ -255,7 +255,7 @@ static void what_is_wrong_is_named_and_nothing_written(void **state)
     picture = chart_picture_usual();
     picture.covered_columns = 3;
     chart_picture_write_jpeg(&picture, "leaf.jpg");
-    expect_weft("colour leaf.jpg -o no.json", 1, "'leaf.jpg': no colour chart is seen in it, or not all of it");
+    expect_weft("colour leaf.jpg -o no.json", 1, "'leaf.jpg': no complete colour chart was found in it");
     assert_true(access("no.json", F_OK) != 0);
     picture = chart_picture_usual();
     for (int i = 0; i < 4; i++)
@@ -270,7 +270,7 @@ static void what_is_wrong_is_named_and_nothing_written(void **state)
         strip.pixels[i] = (float)(i * 7919 % 1000) / 1000;
     assert_int_equal(weft_image_write("strip.exr", &strip, NULL, NULL), WEFT_OK);
     weft_image_free(&strip);
-    assert_refused("strip.exr", "no colour chart is seen");
+    assert_refused("strip.exr", "no complete colour chart was found");
     assert_refused("missing.jpg", "missing.jpg");
     assert_refused(".", "session.json");
     expect_weft("colour leaf.jpg -o ./leaf.jpg", 2, "would overwrite");

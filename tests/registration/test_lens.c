@@ -312,7 +312,7 @@ static void what_the_photographs_cannot_tell_is_said(void **state)
     weft_lines_free(&names);
     names = take_series(&board_page, 4, 6, 0.55, 0);
     expect_ok(calibrate(board_text, false, &names, &report, &error), &error);
-    assert_true(warns(&report, "few") && warns(&report, "one side") && warns(&report, "farther out"));
+    assert_true(warns(&report, "few") && warns(&report, "one side") && warns(&report, "guessed beyond"));
     assert_true(warns(&report, "focal length"));
     weft_lens_report_free(&report);
     names.count = 2;
