@@ -87,7 +87,7 @@ static void a_folder_without_images_is_described(void **state)
     assert_int_equal(mkdir("none", 0755), 0);
     assert_refused(weft_images_missing("none", &error), &error, "it is empty");
     touch("none/a.txt");
-    assert_refused(weft_images_missing("none", &error), &error, "its 1 files are something else");
+    assert_refused(weft_images_missing("none", &error), &error, "none of its 1 files has the name");
     touch("none/MVI_1.MOV");
     assert_refused(weft_images_missing("none", &error), &error, "1 of its 2 files are films");
     touch("none/IMG_1.HEIC");

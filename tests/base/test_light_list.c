@@ -93,7 +93,7 @@ static void commas_and_semicolons_separate_too(void **state)
     weft_light_list_free(&list);
     assert_refused("decimal.lp", "1\na.jpg 0,6 0,0 0,8\n", "decimal.lp:2: expected a name and three numbers");
     assert_refused("decimal.lp", "1\na.jpg;0,6;0,0;0,8\n", "decimal.lp:2: expected a name and three numbers");
-    assert_refused("commas.lp", "1\na.jpg,1,0\n", "commas.lp:2: not a name");
+    assert_refused("commas.lp", "1\na.jpg,1,0\n", "commas.lp:2: expected a name");
     assert_refused("commas.lp", "1\n,1,0,0\n", "commas.lp:2: no name");
 }
 
@@ -101,8 +101,8 @@ static void a_bad_lp_file_is_refused_with_its_line(void **state)
 {
     (void)state;
     assert_refused("bad.lp", "2\na.jpg 1 0 0\nb.jpg 1 0\n", "bad.lp:3: expected a name and three numbers");
-    assert_refused("bad.lp", "1\na.jpg 1 0 zero\n", "bad.lp:2: not a name");
-    assert_refused("bad.lp", "1\na.jpg 1 0 nan\n", "bad.lp:2: not a name");
+    assert_refused("bad.lp", "1\na.jpg 1 0 zero\n", "bad.lp:2: expected a name");
+    assert_refused("bad.lp", "1\na.jpg 1 0 nan\n", "bad.lp:2: expected a name");
     assert_refused("bad.lp", "1\n1 0 0\n", "bad.lp:2: no name");
     assert_refused("bad.lp", "2\nx/a.jpg 1 0 0\n\ny/A.JPG 0 0 1\n", "bad.lp:4: 'A.JPG' is listed already in line 2");
     assert_refused("bad.lp", "3\na.jpg 1 0 0\n", "bad.lp:1: 3 photographs are announced, but 1");

@@ -31,11 +31,11 @@ static void what_is_no_number_is_named(void **state)
     weft_error error = {0};
     colour.matrix[2][5] = NAN;
     assert_int_equal(weft_colour_write("none.json", &colour, NULL, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "'none.json' is not written: 'matrix' came out"));
+    assert_non_null(strstr(error.message, "'none.json' was not written: 'matrix' is not a finite"));
     colour = matrix;
     colour.left_out.worst = INFINITY;
     assert_int_equal(weft_colour_write("none.json", &colour, NULL, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "'none.json' is not written: 'left_out' came out"));
+    assert_non_null(strstr(error.message, "'none.json' was not written: 'left_out' is not a finite"));
 }
 
 static void assert_same(const weft_colour *a, const weft_colour *b)

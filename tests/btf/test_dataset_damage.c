@@ -170,20 +170,20 @@ static void shapes_that_disagree_are_refused(void **state)
 {
     (void)state;
     static const shape_edit edit[] = {
-        {"samples", 3, {HEIGHT, WIDTH, IMAGES}, "4 dimensions, has 3"},
+        {"samples", 3, {HEIGHT, WIDTH, IMAGES}, "4 dimensions; it has 3"},
         {"samples", 4, {HEIGHT, WIDTH, IMAGES, 4}, "dimension 3 of 'samples' is 4"},
         {"samples", 4, {HEIGHT, WIDTH + 1, IMAGES, 3}, "dimension 1 of 'mask' is 5, must be 6"},
         {"samples", 4, {0, WIDTH, IMAGES, 3}, "'mask'"},
         {"mask", 3, {HEIGHT, WIDTH, IMAGES - 1}, "dimension 2 of 'mask'"},
         {"light", 2, {IMAGES, 2}, "dimension 1 of 'light'"},
         {"light", 2, {IMAGES + 1, 3}, "dimension 0 of 'light'"},
-        {"view", 1, {VIEWS}, "'view' must be numbers in 2 dimensions"},
+        {"view", 1, {VIEWS}, "'view' must be a numeric array of 2 dimensions"},
         {"view", 2, {VIEWS, 4}, "'view'"},
         {"view_of_image", 1, {IMAGES - 1}, "'view_of_image'"},
         {"opacity", 3, {HEIGHT, WIDTH, VIEWS + 1}, "'opacity'"},
         {"frame", 4, {HEIGHT, WIDTH, 3, 3}, "dimension 2 of 'frame' is 3, must be 2"},
         {"weight", 1, {IMAGES - 1}, "dimension 0 of 'weight' is 5, must be 6"},
-        {"light_standard_error_deg", 2, {IMAGES, 1}, "must be numbers in 1 dimensions, has 2"},
+        {"light_standard_error_deg", 2, {IMAGES, 1}, "must be a numeric array of 1 dimensions; it has 2"},
         {"view", 2, {1 << 24, 3}, "too few for"},
     };
     for (size_t i = 0; i < sizeof edit / sizeof edit[0]; i++) {

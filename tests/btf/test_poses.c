@@ -103,13 +103,13 @@ static void what_is_no_number_is_named(void **state)
     assert_not_written(&file, "'held_out_rms_px' is not a finite number");
     file = example();
     file.error[2].wobble_rad = NAN;
-    assert_not_written(&file, "'joints' came out");
+    assert_not_written(&file, "'joints' is not a finite");
     file = example();
     file.poses.home.translation.y = NAN;
-    assert_not_written(&file, "'home' came out");
+    assert_not_written(&file, "'home' is not a finite");
     file = example();
     file.poses.camera.cy = NAN;
-    assert_not_written(&file, "'camera' came out");
+    assert_not_written(&file, "'camera' is not a finite");
 }
 
 /* A motion is its pose, whichever part of the quaternion is the largest. */

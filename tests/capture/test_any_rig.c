@@ -236,7 +236,7 @@ static void the_session_knows_where_the_axes_put_the_camera(void **state)
     rig.poses_path = "rig.poses.json";
     poses.camera.fx = 450;
     assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "no axes that calibrated poses could be of"));
+    assert_non_null(strstr(error.message, "calibrated poses need a rig with axes"));
     rig.stage.turns = turns;
     assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
     assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
@@ -279,10 +279,10 @@ static void poses_that_are_not_of_the_rig_are_refused(void **state)
     assert_poses_are_refused(&rig, &poses, "is for photographs of 96 x 80 pixels, the lens is for 96 x 96");
     poses = sound;
     poses.camera.k1 += 0.01;
-    assert_poses_are_refused(&rig, &poses, "another distortion or vignetting than the rig has: calibrate again");
+    assert_poses_are_refused(&rig, &poses, "another lens distortion or vignetting than the rig; calibrate again");
     poses = sound;
     poses.camera.vignetting[2] += 0.01;
-    assert_poses_are_refused(&rig, &poses, "another distortion or vignetting than the rig has: calibrate again");
+    assert_poses_are_refused(&rig, &poses, "another lens distortion or vignetting than the rig; calibrate again");
     poses = sound;
     poses.home.translation.z *= -1;
     assert_poses_are_refused(&rig, &poses, "does not see the plate from above, with turns of 10 0 0 degrees");

@@ -107,7 +107,7 @@ static void a_pose_out_of_reach_names_the_axis(void **state)
     assert_non_null(strstr(error.message, "axis 'ct' would have to turn to 87 degrees; its range is 0 to 85"));
     axes.axis[0].backlash_deg = 0.5; /* 0 can only be taken up from below 0 */
     assert_int_equal(weft_axes_solve(&axes, zenith, zenith, &p, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "not in 0.5 to 85"));
+    assert_non_null(strstr(error.message, "its range is 0.5 to 85"));
     axes = turntable();
     axes.count = 2;
     assert_int_equal(weft_axes_solve(&axes, zenith, low, &p, &error), WEFT_BAD_INPUT);

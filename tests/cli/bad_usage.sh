@@ -70,8 +70,8 @@ done <<'TABLE'
 1|'good.btf.h5' is no prediction|compare good.btf.h5 good.weft --bard good.btf.h5 -o out
 2|needs --weave|compare good.btf.h5 good.weft --fit -o out
 1|'picture.png' is a picture; NAME.btf.h5 or NAME.weft is needed here|tile picture.png -o out
-2|'out.btf.h5' is the name of a dataset|tile good.weft --blend -o out.btf.h5
-2|'out.weft' is the name of a material|tile good.btf.h5 -o out.weft
+2|'out.btf.h5' names a dataset|tile good.weft --blend -o out.btf.h5
+2|'out.weft' names a material|tile good.btf.h5 -o out.weft
 1|'cloth.wv' is a weave|relief cloth.wv -o out
 1|'cloth.wv' is a weave|bard cloth.wv -o out
 1|'knit.stitch' is a stitch; START.wv is needed here|fit-weave good.btf.h5 --weave knit.stitch -o out

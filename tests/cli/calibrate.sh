@@ -90,7 +90,7 @@ poses["camera"]["k1"] += 0.1
 json.dump(poses, open("lens.poses.json", "w"))
 PYTHON
 expect_error 1 "'behind.poses.json' puts the camera" capture --rig off.json --sample "$weave" --plan one.csv --poses behind.poses.json -o no
-expect_error 1 "'lens.poses.json' is of a lens" capture --rig off.json --sample "$weave" --plan one.csv --poses lens.poses.json -o no
+expect_error 1 "'lens.poses.json' has another lens" capture --rig off.json --sample "$weave" --plan one.csv --poses lens.poses.json -o no
 
 # A night that the shots say nothing of, or not all, is not called good.
 view() { printf '%s\n' theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg "$@"; }
@@ -113,7 +113,7 @@ expect_error 1 cut.poses.json capture --rig off.json --sample "$weave" --poses c
 expect_error 1 absent calibrate absent -o no.poses.json
 expect_error 1 "the target is found in 1 of 1 shots: at least 8 are needed" calibrate night -o no.poses.json
 sed 's/"axes": 1,/"axes": 0,/' off.json >flat.json
-expect_error 1 "no axes that calibrated poses" capture --rig flat.json --sample "$weave" --plan plan.csv --poses rig.poses.json -o no
+expect_error 1 "calibrated poses need a rig with axes" capture --rig flat.json --sample "$weave" --plan plan.csv --poses rig.poses.json -o no
 expect_ok capture --sample "$weave" --rig flat.json --plan one.csv --truth-images 1 --truth-size 4 -o flat
 expect_error 1 "does not record the turns of its axes" calibrate flat -o no.poses.json
 expect_error 1 absent.csv calibrate series --plan absent.csv -o no.poses.json

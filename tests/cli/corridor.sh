@@ -23,7 +23,7 @@ expect_says "32 x 32" info cloth.btf.h5
 expect_ok verify cloth.btf.h5
 
 expect_ok compress cloth.btf.h5 --lobes 2 -o cloth.weft
-grep -q "do not meet" out.log && fail "whole repeats are said to have a seam: $(cat out.log)"
+grep -q "does not tile" out.log && fail "whole repeats are said to have a seam: $(cat out.log)"
 expect_ok verify cloth.weft
 expect_ok compress cloth.btf.h5 --lobes 2 --threads 1 -o again.weft
 cmp cloth.weft again.weft || fail "the number of threads changes the material"

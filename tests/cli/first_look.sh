@@ -20,7 +20,7 @@ photograph() {
     done
     expect_says "^no heights: " import "$1" -o "$1.btf.h5"
     expect_ok compress "$1.btf.h5" -o "$1.weft"
-    grep -q "do not meet" out.log && fail "grey paper is said to have a seam: $(cat out.log)"
+    grep -q "does not tile" out.log && fail "grey paper is said to have a seam: $(cat out.log)"
     true
 }
 

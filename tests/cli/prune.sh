@@ -48,7 +48,7 @@ added=$(($(wc -c <told.weft) - after))
 expect_ok render knit.weft "$@" -o shot.png
 expect_ok prune knit.weft --settings shot.png --error 0 -o shot.weft
 
-expect_error 1 "pruned for a scene before" prune again.weft "$@" -o no.weft
+expect_error 1 "already pruned for a scene" prune again.weft "$@" -o no.weft
 printf 'time_s,pan_right\n0,30\n' >aside.csv
 expect_error 1 "nothing of the mesh" prune knit.weft "$@" --path aside.csv -o no.weft
 printf 'v 0 0 0\nv 1 0 0\nv 0 0 1\nvt 0.5 0.5\nf 1/1 2/1 3/1\n' >flat.obj

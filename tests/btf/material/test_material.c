@@ -200,7 +200,7 @@ static weft_code code_of_message(const char *message)
     if (strstr(message, "newer Weft"))
         return WEFT_NOT_SUPPORTED;
     bool is_other = strstr(message, "regular file") || strstr(message, "is no .weft file") ||
-                    strstr(message, "is a dataset") || strstr(message, "that make sense");
+                    strstr(message, "is a dataset") || strstr(message, "are read");
     return is_other ? WEFT_BAD_INPUT : WEFT_DAMAGED;
 }
 
