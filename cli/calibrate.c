@@ -2,6 +2,7 @@
 #include "btf/session/camera_list.h"
 #include "capture/plan.h"
 #include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 #include "registration/axes/expectation.h"
 #include "registration/axes/sightings.h"
 #include "registration/registration.h"
@@ -186,12 +187,12 @@ static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_
         weft_json_append(&joints, pack_joint(file, k));
     for (int i = 0; i < report->undetermined.count; i++)
         weft_json_append(&undetermined, json_string(report->undetermined.line[i]));
-    return json_pack("{ss si si sf sf sf sf sf so so si si so so so sf sb}", "event", "poses", "shots",
-                     sightings->count, "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px",
-                     file->rms_px, "point_px", file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad),
-                     "scatter_mm", file->scatter_mm, "joints", joints, "not_told", undetermined, "poses", e->poses,
-                     "unreachable", n->unreachable, "expected_median_texels", weft_json_number(e->median_texels),
-                     "expected_worst_texels", weft_json_number(e->worst.texels), "expected_direction_deg",
+    return json_pack("{si si sf sf sf sf sf so so si si so so so sf sb}", "shots", sightings->count, "used",
+                     report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px", file->rms_px, "point_px",
+                     file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad), "scatter_mm", file->scatter_mm,
+                     "joints", joints, "not_told", undetermined, "poses", e->poses, "unreachable", n->unreachable,
+                     "expected_median_texels", weft_json_number(e->median_texels), "expected_worst_texels",
+                     weft_json_number(e->worst.texels), "expected_direction_deg",
                      weft_json_number(weft_deg_of_rad(e->direction_rad)), "allowed_texels", n->allowed_texels,
                      "good_enough", n->good_enough);
 }
@@ -223,7 +224,7 @@ static weft_code finish(const calibrate_command *command, const weft_session *se
     WEFT_TRY(expect(session, sightings, plan, &report->fit, nominal, &n, error));
     WEFT_TRY(write_poses(command, sightings, report, error));
     say_poses(command, sightings, report, &n);
-    return weft_command_event_of(&command->common, pack_poses(sightings, report, &n), error);
+    return weft_command_report(&command->common, "poses", pack_poses(sightings, report, &n), error);
 }
 
 static weft_code calibrate(const calibrate_command *command, const weft_session *session, const weft_plan *plan,

@@ -1,5 +1,6 @@
 #include "base/text/json_text.h"
 #include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 #include "registration/colour/calibration.h"
 
 #include <stdlib.h>
@@ -94,7 +95,7 @@ static json_t *pack_record(const colour_command *command, const weft_colour_repo
 static weft_code show_event(const colour_command *command, const weft_colour_report *report, json_t *record,
                             weft_error *error)
 {
-    json_t *event = json_pack("{ss si}", "event", "colour", "used", report->used);
+    json_t *event = json_pack("{si}", "used", report->used);
     json_t *packed = weft_colour_pack(&report->colour);
     bool is_complete = packed && json_object_update(event, packed) == 0 && json_object_update(event, record) == 0;
     json_decref(packed);
@@ -102,7 +103,7 @@ static weft_code show_event(const colour_command *command, const weft_colour_rep
         json_decref(event);
         event = NULL;
     }
-    return weft_command_event_of(&command->common, event, error);
+    return weft_command_report(&command->common, "colour", event, error);
 }
 
 static weft_code keep(const colour_command *command, const weft_colour_report *report, weft_error *error)

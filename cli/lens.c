@@ -2,6 +2,7 @@
 #include "base/text/image_list.h"
 #include "base/text/json_text.h"
 #include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 #include "registration/lens/calibration.h"
 
 #include <sys/stat.h>
@@ -126,7 +127,7 @@ static weft_code show_event(const lens_command *command, const weft_lens_report 
                               "photographs", report->count, "tilt_deg", weft_deg_of_rad(report->tilt_rad), "reach",
                               report->reach, "pattern_px", report->pattern, "noise_px", report->noise);
     add_values(&event, &report->lens);
-    return weft_command_event_of(&command->common, event, error);
+    return weft_command_report(&command->common, "lens", event, error);
 }
 
 static weft_code calibrate(lens_command *command, const weft_lines *names, weft_error *error)

@@ -31,17 +31,6 @@ void weft_command_event(const weft_common_options *common, const char *json_obje
     }
 }
 
-weft_code weft_command_event_of(const weft_common_options *common, json_t *event, weft_error *error)
-{
-    char *line = event ? json_dumps(event, JSON_COMPACT) : NULL;
-    json_decref(event);
-    if (!line)
-        return weft_fail_memory(error, "event", 0);
-    weft_command_event(common, line);
-    free(line);
-    return WEFT_OK;
-}
-
 void weft_command_say_lines(const weft_common_options *common, const char *before, const weft_lines *lines)
 {
     for (int i = 0; i < lines->count; i++)

@@ -61,9 +61,6 @@ void weft_command_say_page(const weft_common_options *common, const char *name, 
 /* One machine-readable event with --json, nothing otherwise. `json_object` is the text of a JSON object. */
 void weft_command_event(const weft_common_options *common, const char *json_object);
 
-/* The same of an object, which is freed; NULL: memory was short. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_command_event_of(const weft_common_options *common, json_t *event, weft_error *error);
-
 /* A result for the user for each of several lines, with `before` in front of it. */
 void weft_command_say_lines(const weft_common_options *common, const char *before, const weft_lines *lines);
 

@@ -1,6 +1,6 @@
 #include "cli/command/heights.h"
 
-#include "base/text/json_text.h"
+#include "cli/command/describe.h"
 #include "relief/page.h"
 
 #include <stdlib.h>
@@ -11,8 +11,7 @@ void weft_heights_say(const weft_common_options *common, const weft_relief_repor
     weft_relief_reason(report, reason, sizeof reason);
     weft_command_say(common, "%s", reason);
     json_t *object = weft_relief_report_pack(report);
-    weft_json_put(&object, "event", json_string("relief"));
-    weft_command_event_of(common, object, NULL);
+    weft_command_report(common, "relief", object, NULL);
 }
 
 weft_code weft_heights_estimate(const weft_common_options *common, const char *path, weft_relief_report *report,

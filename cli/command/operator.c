@@ -1,6 +1,7 @@
 #include "cli/command/operator.h"
 
 #include "base/text/json_text.h"
+#include "cli/command/describe.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -22,7 +23,7 @@ static void say(const weft_terminal_operator *at, const char *text)
         fflush(stderr);
         return;
     }
-    weft_command_event_of(at->common, json_pack("{s:s, s:s}", "event", "ask", "text", text), NULL);
+    weft_command_report(at->common, "ask", json_pack("{s:s}", "text", text), NULL);
 }
 
 /* Waits in short steps, to hear a stop. */

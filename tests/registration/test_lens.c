@@ -7,6 +7,7 @@
 #include "registration/lens/calibration.h"
 #include "tests/registration/plate.h"
 #include "tests/support/expect_ok.h"
+#include "tests/support/run_weft.h"
 #include "tests/support/scratch_folder.h"
 
 #include <math.h>
@@ -261,6 +262,9 @@ static void the_lens_of_the_printed_board_is_found_and_bad_photographs_are_named
     assert_non_null(strstr(reason_of(&report, "blurred.png"), "blurred"));
     assert_non_null(strstr(reason_of(&report, "other.png"), "no board"));
     assert_non_null(strstr(reason_of(&report, "broken.png"), "cannot be read"));
+    char arguments[160];
+    snprintf(arguments, sizeof arguments, "lens . --board %s --json -o lens.json", board_text);
+    expect_weft(arguments, 0, "{\"event\":\"lens\",\"width\":960,");
     weft_lens_report_free(&report);
     weft_lines_free(&names);
 }
