@@ -22,7 +22,7 @@ typedef struct testing {
     const char *name, *model;
     int side;
     weft_compress_options options;
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     weft_splits splits;
     bool through_heights; /* the last fit */
     size_t count[SHOWN_LEVELS];
@@ -32,7 +32,7 @@ typedef struct testing {
 
 /* ---- What a level says ---- */
 
-/* Residuals of level `from` of an excerpt, as of level `level` of the material. */
+/* Residuals of level `from` of a subset, as of level `level` of the material. */
 static weft_code put_level(testing *t, const weft_residuals *residuals, int from, int level,
                            const weft_certificate *certificate, weft_error *error)
 {
@@ -55,7 +55,7 @@ static weft_code put_level(testing *t, const weft_residuals *residuals, int from
 }
 
 /* Levels `level` and, of means of these texels, `more` coarser ones. */
-static weft_code ask_levels(testing *t, const weft_excerpt *excerpt, int level, int more, const uint8_t *held,
+static weft_code ask_levels(testing *t, const weft_texel_subset *subset, int level, int more, const uint8_t *held,
                             const weft_material *material, const weft_certificate *certificate, weft_error *error)
 {
     weft_trial trial = {0};
@@ -63,13 +63,13 @@ static weft_code ask_levels(testing *t, const weft_excerpt *excerpt, int level, 
     weft_asked_samples asked = {0}, none = {0};
     weft_residuals residuals = {0};
     const weft_residuals_taken taken = {.most = 1 << 22, .last_level = more};
-    weft_code code = weft_trial_create(excerpt, held, held, &trial, error);
+    weft_code code = weft_trial_create(subset, held, held, &trial, error);
     if (code == WEFT_OK)
-        code = weft_predictor_of_window(&excerpt->layout, &excerpt->window, material, &predictor, error);
+        code = weft_predictor_of_window(&subset->layout, &subset->window, material, &predictor, error);
     if (code == WEFT_OK)
         code = weft_trial_ask(&trial, predictor, &asked, &none, error);
     if (code == WEFT_OK)
-        code = weft_residuals_add(&residuals, excerpt, &asked, NULL, &taken, error);
+        code = weft_residuals_add(&residuals, subset, &asked, NULL, &taken, error);
     for (int k = 0; code == WEFT_OK && k < residuals.level_count && level + k < SHOWN_LEVELS; k++)
         code = put_level(t, &residuals, k, level + k, certificate, error);
     weft_residuals_free(&residuals);
@@ -80,8 +80,9 @@ static weft_code ask_levels(testing *t, const weft_excerpt *excerpt, int level, 
     return code;
 }
 
-/* Mean of what is not masked of four texels, into the sample `at` of the coarser excerpt. */
-static void average(const weft_excerpt *fine, const size_t texel[4], size_t image, weft_excerpt *coarse, size_t at)
+/* Mean of what is not masked of four texels, into the sample `at` of the coarser subset. */
+static void average(const weft_texel_subset *fine, const size_t texel[4], size_t image, weft_texel_subset *coarse,
+                    size_t at)
 {
     double sum[3] = {0};
     int count = 0;
@@ -97,22 +98,22 @@ static void average(const weft_excerpt *fine, const size_t texel[4], size_t imag
 }
 
 /* Texels of the next level, of an even number of texels along each side. */
-static weft_code halve(const weft_excerpt *fine, weft_excerpt *coarse, weft_error *error)
+static weft_code halve(const weft_texel_subset *fine, weft_texel_subset *coarse, weft_error *error)
 {
     const weft_dataset_layout *from = &fine->layout;
     size_t width = (size_t)from->width / 2, height = (size_t)from->height / 2, images = (size_t)from->image_count;
-    *coarse = (weft_excerpt){.layout = {.width = (int)width,
-                                        .height = (int)height,
-                                        .image_count = from->image_count,
-                                        .view_count = from->view_count,
-                                        .values = from->values,
-                                        .distance = from->distance,
-                                        .texel_pitch_mm = 2 * from->texel_pitch_mm,
-                                        .texel_aspect = from->texel_aspect},
-                             .window = {0, 0, (int)width, (int)height},
-                             .neighbours = 1,
-                             .samples = malloc(3 * width * height * images * sizeof(weft_half)),
-                             .mask = malloc(width * height * images)};
+    *coarse = (weft_texel_subset){.layout = {.width = (int)width,
+                                             .height = (int)height,
+                                             .image_count = from->image_count,
+                                             .view_count = from->view_count,
+                                             .values = from->values,
+                                             .distance = from->distance,
+                                             .texel_pitch_mm = 2 * from->texel_pitch_mm,
+                                             .texel_aspect = from->texel_aspect},
+                                  .window = {0, 0, (int)width, (int)height},
+                                  .neighbours = 1,
+                                  .samples = malloc(3 * width * height * images * sizeof(weft_half)),
+                                  .mask = malloc(width * height * images)};
     WEFT_TRY(weft_dataset_layout_allocate(&coarse->layout, error));
     if (!coarse->samples || !coarse->mask)
         return weft_fail_memory(error, "samples", 7 * width * height * images);
@@ -128,20 +129,20 @@ static weft_code halve(const weft_excerpt *fine, weft_excerpt *coarse, weft_erro
     return WEFT_OK;
 }
 
-static weft_code ask_coarser(testing *t, weft_excerpt *excerpt, int level, const uint8_t *held, weft_material *material,
-                             const weft_certificate *certificate, weft_error *error)
+static weft_code ask_coarser(testing *t, weft_texel_subset *subset, int level, const uint8_t *held,
+                             weft_material *material, const weft_certificate *certificate, weft_error *error)
 {
-    weft_excerpt coarse = {0};
-    bool has_coarser = excerpt->layout.width >= 4 && excerpt->layout.width % 2 == 0 && excerpt->layout.height >= 4 &&
-                       excerpt->layout.height % 2 == 0;
-    WEFT_TRY(ask_levels(t, excerpt, level, 0, held, material, certificate, error));
+    weft_texel_subset coarse = {0};
+    bool has_coarser = subset->layout.width >= 4 && subset->layout.width % 2 == 0 && subset->layout.height >= 4 &&
+                       subset->layout.height % 2 == 0;
+    WEFT_TRY(ask_levels(t, subset, level, 0, held, material, certificate, error));
     if (level + 1 == SHOWN_LEVELS || !has_coarser)
         return WEFT_OK;
     weft_material_drop_finest(material);
-    weft_code code = halve(excerpt, &coarse, error);
+    weft_code code = halve(subset, &coarse, error);
     if (code == WEFT_OK)
         code = ask_coarser(t, &coarse, level + 1, held, material, certificate, error);
-    weft_excerpt_free(&coarse);
+    weft_texel_subset_free(&coarse);
     return code;
 }
 
@@ -149,8 +150,8 @@ static weft_code ask_coarser(testing *t, weft_excerpt *excerpt, int level, const
 static weft_code ask(testing *t, const uint8_t *held, weft_material *material, const weft_certificate *certificate,
                      weft_error *error)
 {
-    return t->through_heights ? ask_levels(t, &t->excerpt, 0, SHOWN_LEVELS - 1, held, material, certificate, error)
-                              : ask_coarser(t, &t->excerpt, 0, held, material, certificate, error);
+    return t->through_heights ? ask_levels(t, &t->subset, 0, SHOWN_LEVELS - 1, held, material, certificate, error)
+                              : ask_coarser(t, &t->subset, 0, held, material, certificate, error);
 }
 
 /* ---- The test ---- */
@@ -163,7 +164,7 @@ static weft_code test_split(testing *t, int split, weft_error *error)
     weft_hold_out result;
     weft_material material = {0};
     int splits;
-    WEFT_TRY(weft_excerpt_write_with_surface(&t->excerpt, held, "bench-certificate.btf.h5", &others, error));
+    WEFT_TRY(weft_texel_subset_write_with_surface(&t->subset, held, "bench-certificate.btf.h5", &others, error));
     weft_compress_options options = weft_compress_settle(&t->options, others);
     weft_code code = weft_hold_out_enough_splits(weft_dataset_get_layout(others), &splits, error);
     if (code == WEFT_OK)
@@ -172,7 +173,7 @@ static weft_code test_split(testing *t, int split, weft_error *error)
         code = weft_compress(others, &options, NULL, &material, NULL, error);
     t->through_heights = code == WEFT_OK && result.heights.used;
     if (t->through_heights)
-        code = weft_excerpt_give_heights(&t->excerpt, &material, error);
+        code = weft_texel_subset_give_heights(&t->subset, &material, error);
     else
         weft_material_take_heights(&material, NULL);
     if (code == WEFT_OK)
@@ -227,7 +228,7 @@ static weft_code test(testing *t, weft_error *error)
     WEFT_TRY(weft_dataset_open(t->name, &dataset, error));
     weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, TEST_SPLIT + 1, &t->splits, error);
     if (code == WEFT_OK)
-        code = weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, t->side, &t->excerpt, error);
+        code = weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, t->side, &t->subset, error);
     weft_dataset_close(dataset);
     bool each = t->splits.kind == WEFT_SPLIT_EACH;
     int first = each ? 0 : TEST_SPLIT;
@@ -252,7 +253,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "%s\n", error.message);
     for (int level = 0; level < SHOWN_LEVELS; level++)
         free(t.covered[level]);
-    weft_excerpt_free(&t.excerpt);
+    weft_texel_subset_free(&t.subset);
     weft_splits_free(&t.splits);
     return (int)code;
 }

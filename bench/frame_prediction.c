@@ -5,7 +5,7 @@
 #include "base/numeric/statistics.h"
 #include "bench/measure.h"
 #include "compress/compress.h"
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"
 
@@ -31,13 +31,13 @@ static void stop_on(weft_code code, const weft_error *error)
 static weft_dataset *take_texels(weft_dataset *dataset)
 {
     weft_error error = {0};
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     weft_dataset *block;
-    stop_on(weft_excerpt_read(dataset, WEFT_EXCERPT_SQUARES, SIDE, &excerpt, &error), &error);
-    uint8_t *none = calloc((size_t)excerpt.layout.image_count, 1);
-    stop_on(weft_excerpt_write(&excerpt, none, "frame_prediction.btf.h5", &block, &error), &error);
+    stop_on(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_PATCHES, SIDE, &subset, &error), &error);
+    uint8_t *none = calloc((size_t)subset.layout.image_count, 1);
+    stop_on(weft_texel_subset_write(&subset, none, "frame_prediction.btf.h5", &block, &error), &error);
     free(none);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     return block;
 }
 

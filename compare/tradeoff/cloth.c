@@ -40,12 +40,12 @@ weft_code weft_priced_cloth_write(const weft_priced_cloth *cloth, const char *pa
     return weft_weave_write(path, &cloth->weave, NULL, error);
 }
 
-weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_excerpt *excerpt,
+weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_texel_subset *subset,
                                       weft_predictor **predictor, weft_error *error)
 {
     if (cloth->is_threads)
-        return weft_predictor_of_threads(&excerpt->layout, &cloth->threads.cloth, predictor, error);
+        return weft_predictor_of_threads(&subset->layout, &cloth->threads.cloth, predictor, error);
     const weft_weave_layout tiles = weft_weave_lay_out(&cloth->weave, 0, 0);
-    const weft_predicted_window *window = cloth->is_fitted ? NULL : &excerpt->window;
-    return weft_predictor_of_weave(&excerpt->layout, window, &cloth->weave, &tiles, predictor, error);
+    const weft_predicted_window *window = cloth->is_fitted ? NULL : &subset->window;
+    return weft_predictor_of_weave(&subset->layout, window, &cloth->weave, &tiles, predictor, error);
 }

@@ -4,7 +4,7 @@
 #define WEFT_COMPARE_TRADEOFF_CLOTH_H
 
 #include "btf/dataset/dataset.h"
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 #include "evaluate/error/predictor.h"
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
@@ -29,10 +29,10 @@ weft_code weft_priced_cloth_fit(weft_priced_cloth *cloth, weft_dataset *dataset,
 /* Writes a weave to `path`. Errors: WEFT_SYSTEM. */
 weft_code weft_priced_cloth_write(const weft_priced_cloth *cloth, const char *path, weft_error *error);
 
-/* What the cloth says of a block of texels (WEFT_EXCERPT_BLOCK): as a weave lies that was fitted to this block, else as
- * its file lays it on the whole dataset. The cloth and the excerpt must outlive *predictor, which the caller frees.
- * Errors: WEFT_SYSTEM for memory. */
-weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_excerpt *excerpt,
+/* What the cloth says of a block of texels (WEFT_TEXEL_SUBSET_BLOCK): as a weave lies that was fitted to this block,
+ * else as its file lays it on the whole dataset. The cloth and the subset must outlive *predictor, which the caller
+ * frees. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_texel_subset *subset,
                                       weft_predictor **predictor, weft_error *error);
 
 #endif

@@ -34,7 +34,7 @@ static weft_hold_out_error next_errors(double *last, bool of_views, bool of_ligh
     return errors;
 }
 
-/* Squares of the excerpt are averaged while there are four: as many levels as the dataset has from so many texels on.
+/* Squares of the subset are averaged while there are four: as many levels as the dataset has from so many texels on.
  */
 static int expected_levels(const weft_dataset_layout *layout)
 {

@@ -22,15 +22,15 @@ static const double certified = 0.95;
 struct weft_held_bench {
     const weft_dataset *dataset;
     const char *scratch_path;
-    weft_excerpt excerpt;
-    weft_texel_block asked; /* of the excerpt, in its middle: less than all where it has a surface */
-    weft_excerpt alone;     /* these, to which lobes are fitted where it has a surface; else nothing */
+    weft_texel_subset subset;
+    weft_texel_block asked;  /* of the subset, in its middle: less than all where it has a surface */
+    weft_texel_subset alone; /* these, to which lobes are fitted where it has a surface; else nothing */
     weft_splits splits;
     int split_count; /* that are measured: the first ones */
     bool has_pictures;
     bool for_pictures_alone;     /* nothing but these is asked of the model at work */
     uint8_t *kinds;              /* [texel][image] bits 1 << weft_sample_kind */
-    uint8_t *known[MOST_SPLITS]; /* [texel][image] by split: held out, and known through the surface of the excerpt, so
+    uint8_t *known[MOST_SPLITS]; /* [texel][image] by split: held out, and known through the surface of the subset, so
                                     that all models are asked for the same; NULL where there is none */
     bool is_fitted;              /* the materials below are, of this model */
     weft_priced_model fitted_model;
@@ -46,7 +46,7 @@ void weft_held_error_free(weft_held_error *measured)
 
 /* ---- The bench ---- */
 
-static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
+static weft_code prepare(weft_dataset *dataset, weft_texel_subset_kind kind, int side, weft_splits_asked asked,
                          weft_held_bench *bench, weft_error *error)
 {
     /* The one after the last is that of the fitted images. */
@@ -55,15 +55,15 @@ static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side
     bench->split_count = weft_smaller(bench->split_count, bench->splits.count);
     bool has_surface = weft_dataset_has_surface(dataset);
     int images = weft_dataset_get_layout(dataset)->image_count;
-    WEFT_TRY(weft_excerpt_read(dataset, kind, has_surface ? weft_hold_out_surface_side(images) : side, &bench->excerpt,
-                               error));
-    bench->asked = weft_excerpt_middle(&bench->excerpt, side);
+    WEFT_TRY(weft_texel_subset_read(dataset, kind, has_surface ? weft_hold_out_surface_side(images) : side,
+                                    &bench->subset, error));
+    bench->asked = weft_texel_subset_middle(&bench->subset, side);
     if (has_surface)
-        WEFT_TRY(weft_excerpt_crop(&bench->excerpt, &bench->asked, &bench->alone, error));
-    return weft_sample_kinds_mark(&bench->excerpt, &bench->kinds, error);
+        WEFT_TRY(weft_texel_subset_crop(&bench->subset, &bench->asked, &bench->alone, error));
+    return weft_sample_kinds_mark(&bench->subset, &bench->kinds, error);
 }
 
-weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_texel_subset_kind kind, int side, weft_splits_asked asked,
                                  const char *scratch_path, weft_held_bench **result, weft_error *error)
 {
     weft_held_bench *bench = calloc(1, sizeof *bench);
@@ -71,7 +71,7 @@ weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, 
         return weft_fail_memory(error, "bench", sizeof *bench);
     bench->dataset = dataset;
     bench->scratch_path = scratch_path;
-    bench->has_pictures = kind == WEFT_EXCERPT_BLOCK;
+    bench->has_pictures = kind == WEFT_TEXEL_SUBSET_BLOCK;
     weft_code code = prepare(dataset, kind, side, asked, bench, error);
     if (code == WEFT_OK)
         *result = bench;
@@ -92,8 +92,8 @@ void weft_held_bench_free(weft_held_bench *bench)
     if (!bench)
         return;
     forget_fit(bench);
-    weft_excerpt_free(&bench->excerpt);
-    weft_excerpt_free(&bench->alone);
+    weft_texel_subset_free(&bench->subset);
+    weft_texel_subset_free(&bench->alone);
     weft_splits_free(&bench->splits);
     free(bench->kinds);
     for (int s = 0; s < MOST_SPLITS; s++)
@@ -130,13 +130,13 @@ static void free_masks(split_masks *masks)
 static weft_code make_masks(const weft_held_bench *bench, const weft_priced_model *model, int split, split_masks *masks,
                             weft_error *error)
 {
-    size_t images = (size_t)bench->excerpt.layout.image_count;
+    size_t images = (size_t)bench->subset.layout.image_count;
     const uint8_t *held = weft_splits_held(&bench->splits, split);
     const uint8_t *next = weft_splits_held(&bench->splits, (split + 1) % bench->splits.count);
     *masks = (split_masks){malloc(images), malloc(images), malloc(images)};
     if (!masks->left_out || !masks->unseen || !masks->next)
         return weft_fail_memory(error, "images", 3 * images);
-    weft_photographs_leave_out(&bench->excerpt.layout, model->photographs, masks->left_out);
+    weft_photographs_leave_out(&bench->subset.layout, model->photographs, masks->left_out);
     for (size_t i = 0; i < images; i++) {
         masks->unseen[i] = held[i] || masks->left_out[i];
         masks->next[i] = masks->left_out[i] ? 0 : next[i];
@@ -150,9 +150,9 @@ static bool is_fitted_alone(const weft_held_bench *bench, const weft_priced_mode
     return bench->alone.samples && model->options.component_count == 0 && model->family != WEFT_PRICED_CLOTH;
 }
 
-static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const weft_priced_model *model)
+static const weft_texel_subset *fitted_subset(const weft_held_bench *bench, const weft_priced_model *model)
 {
-    return is_fitted_alone(bench, model) ? &bench->alone : &bench->excerpt;
+    return is_fitted_alone(bench, model) ? &bench->alone : &bench->subset;
 }
 
 static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, int split, const uint8_t *unseen,
@@ -163,7 +163,7 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     weft_compress_options options = model->options;
     options.levels = bench->has_pictures && !bench->for_pictures_alone;
     options.heights = false; /* those of the whole dataset are given afterwards */
-    WEFT_TRY(weft_excerpt_write(fitted_excerpt(bench, model), unseen, bench->scratch_path, &others, error));
+    WEFT_TRY(weft_texel_subset_write(fitted_subset(bench, model), unseen, bench->scratch_path, &others, error));
     weft_code code = weft_compress(others, &options, NULL, &bench->material[split], &report, error);
     weft_dataset_close(others);
     if (code != WEFT_OK)
@@ -243,7 +243,7 @@ static weft_code find_interval(const weft_held_bench *bench, const weft_asked_sa
     bool found = false;
     *width = 0;
     const weft_residuals_taken taken = {.most = enough_residuals};
-    weft_code code = weft_residuals_add(&residuals, &bench->excerpt, held, NULL, &taken, error);
+    weft_code code = weft_residuals_add(&residuals, &bench->subset, held, NULL, &taken, error);
     if (code == WEFT_OK)
         code = weft_certify(&residuals, &none, certified, 1, 1, &certificate, &found, error);
     if (code == WEFT_OK && found)
@@ -267,13 +267,13 @@ static void free_said(said *s)
 static weft_code give_heights(const weft_held_bench *bench, const weft_priced_model *model, weft_material *material,
                               weft_weight *weight, weft_error *error)
 {
-    const weft_excerpt *excerpt = &bench->excerpt;
-    const weft_predicted_window *window = &excerpt->window;
-    if (!model->options.heights || !weft_excerpt_has_surface(excerpt) || !material->components)
+    const weft_texel_subset *subset = &bench->subset;
+    const weft_predicted_window *window = &subset->window;
+    if (!model->options.heights || !weft_texel_subset_has_surface(subset) || !material->components)
         return WEFT_OK;
-    WEFT_TRY(weft_excerpt_give_heights(excerpt, material, error));
+    WEFT_TRY(weft_texel_subset_give_heights(subset, material, error));
     double share =
-        (double)excerpt->layout.width * excerpt->layout.height / ((double)window->whole_width * window->whole_height);
+        (double)subset->layout.width * subset->layout.height / ((double)window->whole_width * window->whole_height);
     weight->by_texels += share * (double)weft_material_heights_size(material->heights);
     return WEFT_OK;
 }
@@ -281,7 +281,7 @@ static weft_code give_heights(const weft_held_bench *bench, const weft_priced_mo
 static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, int split,
                               const weft_trial *trial, said *answer, weft_weight *weight, weft_error *error)
 {
-    const weft_excerpt *fitted = fitted_excerpt(bench, model);
+    const weft_texel_subset *fitted = fitted_subset(bench, model);
     weft_material *material = &bench->material[split];
     weft_predictor *predictor;
     WEFT_TRY(weft_weight_of(material, weight, error));
@@ -299,8 +299,8 @@ static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *m
 static weft_code ask_bard(const weft_held_bench *bench, const weft_priced_model *model, const weft_trial *trial,
                           const uint8_t *unseen, said *answer, weft_error *error)
 {
-    const weft_excerpt *excerpt = fitted_excerpt(bench, model);
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_texel_subset *subset = fitted_subset(bench, model);
+    const weft_dataset_layout *layout = &subset->layout;
     const weft_bard_options options = weft_bard_defaults();
     long texels = (long)layout->width * layout->height;
     size_t values = 3 * (size_t)texels * (size_t)layout->image_count;
@@ -309,7 +309,7 @@ static weft_code ask_bard(const weft_held_bench *bench, const weft_priced_model 
     if (!predicted)
         return weft_fail_memory(error, "predictions", values * sizeof *predicted);
     weft_code code =
-        weft_bard_predict_texels(layout, unseen, &options, excerpt->samples, excerpt->mask, texels, predicted, error);
+        weft_bard_predict_texels(layout, unseen, &options, subset->samples, subset->mask, texels, predicted, error);
     if (code != WEFT_OK) {
         free(predicted);
         return code;
@@ -325,11 +325,11 @@ static weft_code ask_fitted_cloth(weft_held_bench *bench, const weft_trial *tria
 {
     weft_dataset *others;
     weft_predictor *predictor;
-    WEFT_TRY(weft_excerpt_write(&bench->excerpt, unseen, bench->scratch_path, &others, error));
+    WEFT_TRY(weft_texel_subset_write(&bench->subset, unseen, bench->scratch_path, &others, error));
     weft_code code = weft_priced_cloth_fit(cloth, others, error);
     weft_dataset_close(others);
     WEFT_TRY(code);
-    WEFT_TRY(weft_priced_cloth_predictor(cloth, &bench->excerpt, &predictor, error));
+    WEFT_TRY(weft_priced_cloth_predictor(cloth, &bench->subset, &predictor, error));
     code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
     weft_predictor_free(predictor);
     return code;
@@ -364,10 +364,10 @@ static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *mode
 
 static weft_code find_known(weft_held_bench *bench, int split, const weft_trial *trial, weft_error *error)
 {
-    const weft_dataset_layout *layout = &bench->excerpt.layout;
+    const weft_dataset_layout *layout = &bench->subset.layout;
     size_t samples = (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count;
     weft_asked_samples seen = {0};
-    if (!weft_excerpt_has_surface(&bench->excerpt) || bench->known[split])
+    if (!weft_texel_subset_has_surface(&bench->subset) || bench->known[split])
         return WEFT_OK;
     bench->known[split] = calloc(samples, 1);
     if (!bench->known[split])
@@ -409,7 +409,7 @@ static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *
     said answer = {0};
     weft_code code = make_masks(bench, model, split, &masks, error);
     if (code == WEFT_OK)
-        code = weft_trial_create(&bench->excerpt, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
+        code = weft_trial_create(&bench->subset, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
     trial.asked = bench->asked;
     trial.predicts_asked = is_fitted_alone(bench, model);
     if (code == WEFT_OK && bench->for_pictures_alone)

@@ -6,13 +6,13 @@
 #include "compare/pictures/picture_quality.h"
 #include "compare/tradeoff/priced_model.h"
 #include "compare/tradeoff/weight.h"
-#include "compress/hold_out/excerpt.h"
 #include "compress/hold_out/split.h"
+#include "compress/hold_out/texel_subset.h"
 #include "compress/hold_out/trial.h"
 
 /* ---- Kinds of samples ---- */
 
-/* Samples of an excerpt told apart where eyes look. */
+/* Samples of a subset told apart where eyes look. */
 
 /* Which samples. A texel's brightness in an image is the mean of its channels, divided by the cosine of the light where
  * the dataset holds that. */
@@ -29,7 +29,7 @@ const char *weft_sample_kind_name(weft_sample_kind kind);
 
 /* Of every sample the bits 1 << weft_sample_kind: *kinds [texel][image], which the caller frees, also on failure.
  * Errors: WEFT_SYSTEM for memory. */
-weft_code weft_sample_kinds_mark(const weft_excerpt *excerpt, uint8_t **kinds, weft_error *error);
+weft_code weft_sample_kinds_mark(const weft_texel_subset *subset, uint8_t **kinds, weft_error *error);
 
 typedef struct weft_held_error {
     weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];
@@ -57,12 +57,12 @@ typedef struct weft_splits_asked {
 typedef struct weft_held_bench weft_held_bench;
 
 /* Reads at most side x side texels of the kind, of which `asked` says which directions are held out; of a handful of
- * images each is in turn. Pictures are compared where texels are neighbours (WEFT_EXCERPT_BLOCK). Files are written
- * to the folder of `scratch_path`, nameless once they are complete. The caller frees.
- * Of a dataset with a surface the kind is to be WEFT_EXCERPT_BLOCK: then more are read, to which components are fitted,
- * and those in the middle are measured, of which all models are asked for what is known through the surface alone.
- * Dataset and path must outlive the bench. Errors: those of weft_splits_create and of reading. */
-weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
+ * images each is in turn. Pictures are compared where texels are neighbours (WEFT_TEXEL_SUBSET_BLOCK). Files are
+ * written to the folder of `scratch_path`, nameless once they are complete. The caller frees. Of a dataset with a
+ * surface the kind is to be WEFT_TEXEL_SUBSET_BLOCK: then more are read, to which components are fitted, and those in
+ * the middle are measured, of which all models are asked for what is known through the surface alone. Dataset and path
+ * must outlive the bench. Errors: those of weft_splits_create and of reading. */
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_texel_subset_kind kind, int side, weft_splits_asked asked,
                                  const char *scratch_path, weft_held_bench **result, weft_error *error);
 void weft_held_bench_free(weft_held_bench *bench);
 

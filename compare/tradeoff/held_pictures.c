@@ -54,12 +54,12 @@ void weft_held_pictures_keep(weft_trial *trial)
 static void fill(const weft_trial *trial, const weft_asked_samples *said, weft_image_pair *pair)
 {
     const weft_texel_block *block = &trial->asked;
-    size_t images = (size_t)trial->excerpt->layout.image_count, width = (size_t)trial->excerpt->layout.width;
+    size_t images = (size_t)trial->subset->layout.image_count, width = (size_t)trial->subset->layout.width;
     memset(pair->mask, 1, (size_t)pair->sample.width * (size_t)pair->sample.height);
     for (size_t i = 0; i < said->count; i++) {
-        size_t of_excerpt = said->sample[i] / images;
+        size_t of_subset = said->sample[i] / images;
         size_t texel =
-            (of_excerpt / width - (size_t)block->y) * (size_t)block->width + of_excerpt % width - (size_t)block->x;
+            (of_subset / width - (size_t)block->y) * (size_t)block->width + of_subset % width - (size_t)block->x;
         if (said->sample[i] % images != (size_t)pair->image)
             continue;
         pair->mask[texel] = 0;
@@ -121,7 +121,7 @@ static weft_code compare_image(const weft_trial *trial, const weft_asked_samples
     weft_image_pair pair;
     weft_error_summary summary;
     double exposure;
-    weft_dataset_layout shown = trial->excerpt->layout;
+    weft_dataset_layout shown = trial->subset->layout;
     shown.width = trial->asked.width;
     shown.height = trial->asked.height;
     weft_code code = weft_image_pair_create(&shown, image, &pair, error);

@@ -6,13 +6,13 @@
 #include "btf/material/metadata.h"
 #include "compare/tradeoff/weight.h"
 #include "compress/compress.h"
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 #include "compress/run/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 64, LEAST_SIDE = 32, SQUARE_SIDE = 16 /* of WEFT_EXCERPT_SQUARES */ };
+enum { SIDE = 64, LEAST_SIDE = 32, SQUARE_SIDE = 16 /* of WEFT_TEXEL_SUBSET_PATCHES */ };
 
 static const long most_samples_of_squares = 1L << 25, most_samples_of_block = 1L << 19;
 
@@ -70,15 +70,15 @@ static weft_code fit(const predicting *work, weft_dataset *some, weft_weight *we
     return code;
 }
 
-/* Frees the excerpt before the fit. */
-static weft_code fit_excerpt(const predicting *work, weft_excerpt *excerpt, weft_weight *weight, weft_error *error)
+/* Frees the subset before the fit. */
+static weft_code fit_subset(const predicting *work, weft_texel_subset *subset, weft_weight *weight, weft_error *error)
 {
     weft_dataset *some = NULL;
-    uint8_t *none = calloc((size_t)excerpt->layout.image_count, 1);
-    weft_code code = none ? weft_excerpt_write(excerpt, none, work->scratch_path, &some, error)
-                          : weft_fail_memory(error, "images", (size_t)excerpt->layout.image_count);
+    uint8_t *none = calloc((size_t)subset->layout.image_count, 1);
+    weft_code code = none ? weft_texel_subset_write(subset, none, work->scratch_path, &some, error)
+                          : weft_fail_memory(error, "images", (size_t)subset->layout.image_count);
     free(none);
-    weft_excerpt_free(excerpt);
+    weft_texel_subset_free(subset);
     if (code == WEFT_OK)
         code = fit(work, some, weight, error);
     weft_dataset_close(some);
@@ -114,13 +114,14 @@ static weft_code require_memory(const predicting *work, int side, weft_error *er
         weft_dataset_path(work->dataset), "the texels by which its size is predicted", error);
 }
 
-static weft_code read_excerpt(const predicting *work, weft_excerpt *excerpt, weft_error *error)
+static weft_code read_subset(const predicting *work, weft_texel_subset *subset, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     bool is_near = layout->distance == WEFT_NEAR;
     int side = is_near ? side_of_block(layout->image_count) : side_of_squares(layout->image_count);
     WEFT_TRY(require_memory(work, side, error));
-    return weft_excerpt_read(work->dataset, is_near ? WEFT_EXCERPT_BLOCK : WEFT_EXCERPT_SQUARES, side, excerpt, error);
+    return weft_texel_subset_read(work->dataset, is_near ? WEFT_TEXEL_SUBSET_BLOCK : WEFT_TEXEL_SUBSET_PATCHES, side,
+                                  subset, error);
 }
 
 weft_code weft_prediction_find_costs(weft_dataset *dataset, const weft_compress_options *options,
@@ -130,9 +131,9 @@ weft_code weft_prediction_find_costs(weft_dataset *dataset, const weft_compress_
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     const predicting work = {dataset, options, scratch_path, timer, prediction};
     weft_weight weight;
-    weft_excerpt excerpt;
-    WEFT_TRY(read_excerpt(&work, &excerpt, error));
-    WEFT_TRY(fit_excerpt(&work, &excerpt, &weight, error));
+    weft_texel_subset subset;
+    WEFT_TRY(read_subset(&work, &subset, error));
+    WEFT_TRY(fit_subset(&work, &subset, &weight, error));
     prediction->bytes = weft_weight_scaled(&weight, layout->width, layout->height, options->levels);
     return WEFT_OK;
 }

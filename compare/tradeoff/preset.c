@@ -75,14 +75,14 @@ static weft_code measure_models(choosing *work, weft_held_bench *bench, weft_err
 }
 
 /* Near lights need texels at even distances; the model for few images needs neighbours, and so does a surface. */
-static weft_excerpt_kind choose_texels(const choosing *work)
+static weft_texel_subset_kind choose_texels(const choosing *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     int lobes;
     if (weft_compress_plan(layout, work->given, &lobes) == WEFT_COMPRESS_SPARSE ||
         weft_dataset_has_surface(work->dataset))
-        return WEFT_EXCERPT_BLOCK;
-    return layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
+        return WEFT_TEXEL_SUBSET_BLOCK;
+    return layout->distance == WEFT_NEAR ? WEFT_TEXEL_SUBSET_REGULAR : WEFT_TEXEL_SUBSET_SCATTERED;
 }
 
 /* In the middle of a block where the dataset has a surface: there they are to be like what is measured afterwards. */

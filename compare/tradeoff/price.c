@@ -9,7 +9,7 @@
 #include "compare/tradeoff/weight.h"
 #include "compress/bard/predict.h"
 #include "compress/compress.h"
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,14 +41,15 @@ struct weft_price_shop {
 /* The middle of the dataset, without some images (left_out [image_count]; NULL: all). */
 static weft_code write_block(weft_price_shop *shop, const uint8_t *left_out, weft_dataset **block, weft_error *error)
 {
-    weft_excerpt excerpt;
-    WEFT_TRY(weft_excerpt_read(shop->dataset, WEFT_EXCERPT_BLOCK, shop->side, &excerpt, error));
-    uint8_t *none = left_out ? NULL : calloc((size_t)excerpt.layout.image_count, 1);
-    weft_code code = left_out || none ? WEFT_OK : weft_fail_memory(error, "images", (size_t)excerpt.layout.image_count);
+    weft_texel_subset subset;
+    WEFT_TRY(weft_texel_subset_read(shop->dataset, WEFT_TEXEL_SUBSET_BLOCK, shop->side, &subset, error));
+    uint8_t *none = left_out ? NULL : calloc((size_t)subset.layout.image_count, 1);
+    weft_code code = left_out || none ? WEFT_OK : weft_fail_memory(error, "images", (size_t)subset.layout.image_count);
     if (code == WEFT_OK)
-        code = weft_excerpt_write_with_surface(&excerpt, left_out ? left_out : none, shop->scratch_path, block, error);
+        code =
+            weft_texel_subset_write_with_surface(&subset, left_out ? left_out : none, shop->scratch_path, block, error);
     free(none);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     return code;
 }
 

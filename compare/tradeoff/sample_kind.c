@@ -13,16 +13,16 @@ const char *weft_sample_kind_name(weft_sample_kind kind)
     return name[kind];
 }
 
-static float brightness(const weft_excerpt *excerpt, int x, int y, size_t texel, int image)
+static float brightness(const weft_texel_subset *subset, int x, int y, size_t texel, int image)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     size_t at = texel * (size_t)layout->image_count + (size_t)image;
     double sum = 0, cosine = (double)weft_dataset_light_direction(layout, image, x, y).z;
     for (size_t c = 0; c < 3; c++)
-        sum += (double)weft_float_of_half(excerpt->samples[3 * at + c]);
+        sum += (double)weft_float_of_half(subset->samples[3 * at + c]);
     if (layout->values == WEFT_REFLECTANCE_COSINE)
         sum /= fmax(cosine, 1e-3);
-    return excerpt->mask[at] || !(cosine > 0) ? NAN : (float)(sum / 3);
+    return subset->mask[at] || !(cosine > 0) ? NAN : (float)(sum / 3);
 }
 
 static bool is_grazing(const weft_dataset_layout *layout, int image, int x, int y)
@@ -33,13 +33,13 @@ static bool is_grazing(const weft_dataset_layout *layout, int image, int x, int 
 }
 
 /* `value` and `sorted` are [image_count]. */
-static void mark_texel(const weft_excerpt *excerpt, int x, int y, float *value, float *sorted, uint8_t *all_kinds)
+static void mark_texel(const weft_texel_subset *subset, int x, int y, float *value, float *sorted, uint8_t *all_kinds)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     size_t texel = (size_t)y * (size_t)layout->width + (size_t)x, images = (size_t)layout->image_count, count = 0;
     uint8_t *kinds = all_kinds + texel * images;
     for (int i = 0; i < layout->image_count; i++) {
-        value[i] = brightness(excerpt, x, y, texel, i);
+        value[i] = brightness(subset, x, y, texel, i);
         if (!isnan(value[i]))
             sorted[count++] = value[i];
     }
@@ -51,9 +51,9 @@ static void mark_texel(const weft_excerpt *excerpt, int x, int y, float *value, 
                       (value[i] >= bright) << WEFT_SAMPLES_HIGHLIGHTS | (value[i] <= dark) << WEFT_SAMPLES_SHADOWS);
 }
 
-weft_code weft_sample_kinds_mark(const weft_excerpt *excerpt, uint8_t **kinds, weft_error *error)
+weft_code weft_sample_kinds_mark(const weft_texel_subset *subset, uint8_t **kinds, weft_error *error)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     size_t images = (size_t)layout->image_count, texels = (size_t)layout->width * (size_t)layout->height;
     float *value = malloc(2 * images * sizeof *value);
     *kinds = malloc(texels * images);
@@ -62,7 +62,7 @@ weft_code weft_sample_kinds_mark(const weft_excerpt *excerpt, uint8_t **kinds, w
         return weft_fail_memory(error, "samples", texels * images);
     }
     for (int texel = 0; texel < (int)texels; texel++)
-        mark_texel(excerpt, texel % layout->width, texel / layout->width, value, value + images, *kinds);
+        mark_texel(subset, texel % layout->width, texel / layout->width, value, value + images, *kinds);
     free(value);
     return WEFT_OK;
 }

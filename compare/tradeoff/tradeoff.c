@@ -168,14 +168,14 @@ static weft_code open_spread_bench(studying *work, int which, weft_error *error)
     if (!weft_measures_spread_texels(work->dataset, &options, weft_held_bench_splits(work->pictures)))
         return WEFT_OK;
     return weft_held_bench_create(
-        work->dataset, WEFT_EXCERPT_SCATTERED, weft_measured_texels_spread_side(layout, &options),
+        work->dataset, WEFT_TEXEL_SUBSET_SCATTERED, weft_measured_texels_spread_side(layout, &options),
         (weft_splits_asked){0, work->result->split_count}, work->scratch_path, &work->spread[which], error);
 }
 
 static weft_code open_benches(studying *work, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, PICTURE_SIDE, (weft_splits_asked){0, 1},
+    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_TEXEL_SUBSET_BLOCK, PICTURE_SIDE, (weft_splits_asked){0, 1},
                                     work->scratch_path, &work->pictures, error));
     WEFT_TRY(weft_hold_out_enough_splits(layout, &work->result->split_count, error));
     for (int which = 0; which < TEXELS_OF_END; which++)

@@ -200,7 +200,7 @@ static weft_code certify_level(const weft_residuals *held, const weft_residuals 
     return WEFT_OK;
 }
 
-/* Which levels of an excerpt a material's are taken from. */
+/* Which levels of a subset a material's are taken from. */
 typedef struct level_source {
     int beside; /* up to this one they are of texels that lie beside each other */
     int apart;  /* later ones of texels so many levels further from each other */
@@ -213,24 +213,24 @@ static level_source source_of_levels(const weft_residuals *held, double spacing,
                           held->level_count - 1};
 }
 
-static int level_of_excerpt(const level_source *source, int level)
+static int level_of_subset(const level_source *source, int level)
 {
     int beside = weft_smaller(level, source->beside);
     return weft_smaller(weft_larger(beside, level - source->apart), source->last);
 }
 
-/* Levels of the material, of which several may be one of the excerpt. */
+/* Levels of the material, of which several may be one of the subset. */
 static weft_code certify_levels(const weft_residuals *held, const weft_residuals *fitted, const level_source *source,
                                 float *scratch, weft_certificate *c, weft_error *error)
 {
     c->level_count = weft_smaller(held->level_count + source->apart, WEFT_MATERIAL_MAX_LEVELS);
     c->measured_levels = source->apart == 0 ? c->level_count : weft_smaller(source->beside + 1, c->level_count);
     for (int k = 0; k < c->level_count; k++) {
-        int of_excerpt = level_of_excerpt(source, k);
-        if (k > 0 && of_excerpt == level_of_excerpt(source, k - 1))
+        int of_subset = level_of_subset(source, k);
+        if (k > 0 && of_subset == level_of_subset(source, k - 1))
             c->level[k] = c->level[k - 1];
         else
-            WEFT_TRY(certify_level(held, fitted, of_excerpt, scratch, c, &c->level[k], error));
+            WEFT_TRY(certify_level(held, fitted, of_subset, scratch, c, &c->level[k], error));
     }
     return WEFT_OK;
 }

@@ -25,7 +25,7 @@ typedef struct weft_residual {
 
 /* Freed with weft_residuals_free. */
 typedef struct weft_residuals {
-    int level_count; /* of the excerpt: level k has squares of 2^k x 2^k of its texels */
+    int level_count; /* of the subset: level k has squares of 2^k x 2^k of its texels */
     size_t count[WEFT_RESIDUAL_LEVELS], capacity[WEFT_RESIDUAL_LEVELS];
     weft_residual *value[WEFT_RESIDUAL_LEVELS];
 } weft_residuals;
@@ -37,16 +37,17 @@ typedef struct weft_residuals_taken {
     size_t most;          /* of a level, about: of every texel every n-th image is taken, beginning with another one
                              at each. Texels differ more than images do, and none is left out */
     int first_level, last_level; /* others stay as they are */
-    const uint8_t *level;        /* [texel] of an excerpt whose texels are of several levels (excerpt_levels.h); NULL:
+    const uint8_t *level;        /* [texel] of a subset whose texels are of several levels (subset_levels.h); NULL:
                                     they are of level 0, and means over squares of them are those of the others */
 } weft_residuals_taken;
 
-/* Adds the residuals of what is said of some images of an excerpt. `moved` are the same samples as a material says them
+/* Adds the residuals of what is said of some images of a subset. `moved` are the same samples as a material says them
  * whose stored numbers were moved by a step each (compress/hold_out/rounding.h), or NULL. Errors: WEFT_SYSTEM for
  * memory.
  */
-weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *excerpt, const weft_asked_samples *asked,
-                             const weft_asked_samples *moved, const weft_residuals_taken *taken, weft_error *error);
+weft_code weft_residuals_add(weft_residuals *residuals, const weft_texel_subset *subset,
+                             const weft_asked_samples *asked, const weft_asked_samples *moved,
+                             const weft_residuals_taken *taken, weft_error *error);
 
 /* The certificate for `probability`, from residuals of images that were held out, and those of images that were fitted,
  * of the same fits. The levels may be of different texels; the scale is that of level 0. It is a normalised split
@@ -54,7 +55,7 @@ weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *exce
  * quantile of the residuals by predicted value, times a factor for each ring of the view and one for each ring of the
  * light, found in turns. Squares of at most `neighbours` texels along a side, a power of two, are of texels that lie
  * beside each other: level k of a material takes its quantile from squares of 2^k of those. A larger square of the
- * excerpt is of texels that lie `spacing` apart, in texels: coarser levels take theirs from the largest one that lies
+ * subset is of texels that lie `spacing` apart, in texels: coarser levels take theirs from the largest one that lies
  * within their texels, which has no more texels than they, so that it is rather too large. Sets everything but
  * direction_count and registration. *found is false where nothing was held out or all of it is black. Errors:
  * WEFT_SYSTEM for memory.

@@ -51,7 +51,8 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
                              weft_compress_report *report, weft_error *error)
 {
     weft_dataset *others;
-    WEFT_TRY(weft_excerpt_write(weft_measured_texels_fitted(&work->texels), held, work->scratch_path, &others, error));
+    WEFT_TRY(
+        weft_texel_subset_write(weft_measured_texels_fitted(&work->texels), held, work->scratch_path, &others, error));
     weft_code code = weft_compress(others, &work->options, NULL, material, report, error);
     weft_dataset_close(others);
     return code;
@@ -75,9 +76,9 @@ static void free_answers(split_answers *said)
 static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
                               weft_asked_samples *held, weft_asked_samples *fitted, weft_error *error)
 {
-    const weft_excerpt *excerpt = weft_measured_texels_fitted(&work->texels);
+    const weft_texel_subset *subset = weft_measured_texels_fitted(&work->texels);
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_window(&excerpt->layout, &excerpt->window, material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_window(&subset->layout, &subset->window, material, &predictor, error));
     weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
     weft_predictor_free(predictor);
     return code;
@@ -91,7 +92,7 @@ static weft_code ask(const measuring *work, const weft_trial *trial, weft_materi
     held_alone.fitted_count = 0;
     for (int way = 0; way < work->way_count; way++) {
         if (way == THROUGH_HEIGHTS)
-            WEFT_TRY(weft_excerpt_give_heights(&work->texels.excerpt, material, error));
+            WEFT_TRY(weft_texel_subset_give_heights(&work->texels.subset, material, error));
         WEFT_TRY(ask_material(work, trial, material, &said->held[way], &said->fitted[way], error));
     }
     weft_material_move_by_steps(material);
@@ -165,7 +166,7 @@ static const answers *decide_on_heights(const measuring *work)
 
 static weft_code take_residuals(measuring *work, int split, const split_answers *said, weft_error *error)
 {
-    const weft_excerpt *excerpt = &work->texels.excerpt;
+    const weft_texel_subset *subset = &work->texels.subset;
     const weft_residuals_taken taken = {.first_image = (uint32_t)split * (uint32_t)work->splits.image_count,
                                         .most = most_residuals / (size_t)work->measured_count,
                                         .first_level = work->first_level,
@@ -173,8 +174,8 @@ static weft_code take_residuals(measuring *work, int split, const split_answers 
                                         .level = work->texels.level};
     for (int way = 0; way < work->way_count; way++) {
         answers *all = &work->said[way];
-        WEFT_TRY(weft_residuals_add(&all->held_residuals, excerpt, &said->held[way], &said->moved[way], &taken, error));
-        WEFT_TRY(weft_residuals_add(&all->fitted_residuals, excerpt, &said->fitted[way], NULL, &taken, error));
+        WEFT_TRY(weft_residuals_add(&all->held_residuals, subset, &said->held[way], &said->moved[way], &taken, error));
+        WEFT_TRY(weft_residuals_add(&all->fitted_residuals, subset, &said->fitted[way], NULL, &taken, error));
     }
     return WEFT_OK;
 }
@@ -198,7 +199,7 @@ static weft_code take_photographs(measuring *work, const weft_asked_samples *pho
 static weft_code ask_photographs(measuring *work, const weft_trial *trial, weft_error *error)
 {
     weft_asked_samples photographs = {0}, flat = {0};
-    bool has_surface = weft_excerpt_has_surface(&work->texels.excerpt);
+    bool has_surface = weft_texel_subset_has_surface(&work->texels.subset);
     weft_code code = has_surface ? weft_trial_ask_photographs(trial, false, &flat, error) : WEFT_OK;
     if (code == WEFT_OK)
         code = weft_trial_ask_photographs(trial, has_surface, &photographs, error);
@@ -219,7 +220,7 @@ static weft_code ask_split(measuring *work, int split, split_answers *said, weft
     WEFT_TRY(fit_without(work, held, &material, &report, error));
     work->result->smaller_model |= report.model != work->whole_model || report.lobe_count != work->whole_lobes;
     weft_trial trial;
-    weft_code code = weft_trial_create(&work->texels.excerpt, held, next, &trial, error);
+    weft_code code = weft_trial_create(&work->texels.subset, held, next, &trial, error);
     if (work->texels.asked.width > 0)
         trial.asked = work->texels.asked;
     trial.predicts_asked = work->texels.alone.samples != NULL;
@@ -289,8 +290,8 @@ static void describe(const weft_dataset_layout *layout, measuring *work)
 static weft_code measure_texels(measuring *work, const weft_progress *progress, weft_error *error)
 {
     static const char step[] = "fitting without some images";
-    const weft_excerpt *fitted = weft_measured_texels_fitted(&work->texels);
-    if (weft_excerpt_is_masked(fitted))
+    const weft_texel_subset *fitted = weft_measured_texels_fitted(&work->texels);
+    if (weft_texel_subset_is_masked(fitted))
         return weft_fail(error, WEFT_BAD_USAGE, "every sample of the texels that were tried is masked");
     for (int s = 0; s < work->measured_count; s++) {
         weft_progress_report(progress, step, s, work->measured_count);
@@ -325,7 +326,8 @@ static weft_code measure_neighbours(weft_dataset *dataset, measuring *work, cons
     work->last_level = WEFT_RESIDUAL_LEVELS - 1;
     WEFT_TRY(weft_measured_texels_read(dataset, &work->options, &work->splits, &work->texels, error));
     describe(weft_dataset_get_layout(dataset), work);
-    if (work->given->heights && work->options.component_count > 0 && weft_excerpt_has_surface(&work->texels.excerpt))
+    if (work->given->heights && work->options.component_count > 0 &&
+        weft_texel_subset_has_surface(&work->texels.subset))
         work->way_count = WAYS;
     return measure_texels(work, progress, error);
 }

@@ -15,7 +15,7 @@ typedef struct seen_image {
 } seen_image;
 
 struct weft_interpolation {
-    const weft_excerpt *excerpt;
+    const weft_texel_subset *subset;
     const int *image; /* [count] */
     int count;
     weft_view_order order;
@@ -27,7 +27,7 @@ struct weft_interpolation {
 static weft_raw_stencil find_stencil(const weft_interpolation *interpolation, const weft_raw_directions *directions,
                                      int image, int x, int y)
 {
-    const weft_dataset_layout *layout = &interpolation->excerpt->layout;
+    const weft_dataset_layout *layout = &interpolation->subset->layout;
     return weft_raw_stencil_of(directions, &interpolation->order, weft_dataset_light_direction(layout, image, x, y),
                                weft_dataset_view_direction(layout, layout->view_of_image[image], x, y));
 }
@@ -39,7 +39,7 @@ static weft_code find_stencils(weft_interpolation *interpolation, weft_error *er
     if (!interpolation->stencil)
         return weft_fail_memory(error, "interpolation", (size_t)interpolation->count * sizeof(weft_raw_stencil));
     WEFT_TRY(
-        weft_raw_directions_create(&interpolation->excerpt->layout, &interpolation->order, 0, 0, &directions, error));
+        weft_raw_directions_create(&interpolation->subset->layout, &interpolation->order, 0, 0, &directions, error));
     for (int i = 0; i < interpolation->count; i++)
         interpolation->stencil[i] = find_stencil(interpolation, &directions, interpolation->image[i], 0, 0);
     weft_raw_directions_free(&directions);
@@ -48,7 +48,7 @@ static weft_code find_stencils(weft_interpolation *interpolation, weft_error *er
 
 static seen_image see_image(const weft_interpolation *interpolation, const weft_raw_directions *directions, int image)
 {
-    const weft_dataset_layout *layout = &interpolation->excerpt->layout;
+    const weft_dataset_layout *layout = &interpolation->subset->layout;
     weft_barycentric views = weft_triangulation_lookup(directions->views, layout->view[layout->view_of_image[image]]);
     seen_image seen = {{-1, -1, -1}, {0}, {{{0}, {0}}}};
     for (int i = 0; i < 3; i++) {
@@ -63,15 +63,15 @@ static seen_image see_image(const weft_interpolation *interpolation, const weft_
 
 static weft_code see_images(weft_interpolation *interpolation, weft_error *error)
 {
-    const weft_excerpt *excerpt = interpolation->excerpt;
-    const weft_dataset_heights *surface = &excerpt->surface;
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_texel_subset *subset = interpolation->subset;
+    const weft_dataset_heights *surface = &subset->surface;
+    const weft_dataset_layout *layout = &subset->layout;
     weft_raw_directions directions;
     interpolation->seen = calloc((size_t)interpolation->count, sizeof *interpolation->seen);
     if (!interpolation->seen)
         return weft_fail_memory(error, "interpolation", (size_t)interpolation->count * sizeof(seen_image));
-    weft_height_field field = weft_height_field_of(surface->value, surface->width, surface->height,
-                                                   excerpt->whole_mm[0], excerpt->whole_mm[1]);
+    weft_height_field field =
+        weft_height_field_of(surface->value, surface->width, surface->height, subset->whole_mm[0], subset->whole_mm[1]);
     WEFT_TRY(weft_relief_create(&field, layout->view, layout->view_count, &interpolation->relief, error));
     WEFT_TRY(weft_raw_directions_create(layout, &interpolation->order, 0, 0, &directions, error));
     for (int i = 0; i < interpolation->count && directions.views; i++)
@@ -80,17 +80,17 @@ static weft_code see_images(weft_interpolation *interpolation, weft_error *error
     return WEFT_OK;
 }
 
-weft_code weft_interpolation_create(const weft_excerpt *excerpt, const uint8_t *held_out, const int *image, int count,
-                                    bool through, weft_interpolation **result, weft_error *error)
+weft_code weft_interpolation_create(const weft_texel_subset *subset, const uint8_t *held_out, const int *image,
+                                    int count, bool through, weft_interpolation **result, weft_error *error)
 {
     weft_interpolation *interpolation = calloc(1, sizeof *interpolation);
     if (!interpolation)
         return weft_fail_memory(error, "interpolation", sizeof *interpolation);
-    *interpolation = (weft_interpolation){.excerpt = excerpt, .image = image, .count = count};
-    weft_code code = weft_view_order_create(&excerpt->layout, held_out, &interpolation->order, error);
+    *interpolation = (weft_interpolation){.subset = subset, .image = image, .count = count};
+    weft_code code = weft_view_order_create(&subset->layout, held_out, &interpolation->order, error);
     if (code == WEFT_OK && through)
         code = see_images(interpolation, error);
-    else if (code == WEFT_OK && excerpt->layout.distance == WEFT_FAR)
+    else if (code == WEFT_OK && subset->layout.distance == WEFT_FAR)
         code = find_stencils(interpolation, error);
     if (code == WEFT_OK)
         *result = interpolation;
@@ -121,16 +121,16 @@ typedef struct blend {
     double sum[3], weights;
 } blend;
 
-static void add_sample(const weft_excerpt *excerpt, int image, int x, int y, double weight, blend *b)
+static void add_sample(const weft_texel_subset *subset, int image, int x, int y, double weight, blend *b)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     size_t texel = (size_t)y * (size_t)layout->width + (size_t)x,
            at = texel * (size_t)layout->image_count + (size_t)image;
     double cosine = cosine_of(layout, image, x, y);
-    if (excerpt->mask[at] || !(cosine > 0))
+    if (subset->mask[at] || !(cosine > 0))
         return;
     for (size_t c = 0; c < 3; c++)
-        b->sum[c] += weight / cosine * (double)weft_float_of_half(excerpt->samples[3 * at + c]);
+        b->sum[c] += weight / cosine * (double)weft_float_of_half(subset->samples[3 * at + c]);
     b->weights += weight;
 }
 
@@ -141,12 +141,12 @@ static weft_rgb value_of(const blend *b, double cosine)
     return (weft_rgb){scale * b->sum[0], scale * b->sum[1], scale * b->sum[2]};
 }
 
-static weft_rgb interpolate(const weft_excerpt *excerpt, const weft_raw_stencil *stencil, int image, int x, int y)
+static weft_rgb interpolate(const weft_texel_subset *subset, const weft_raw_stencil *stencil, int image, int x, int y)
 {
     blend b = {0};
     for (int i = 0; i < stencil->count; i++)
-        add_sample(excerpt, stencil->image[i], x, y, stencil->weight[i], &b);
-    return value_of(&b, cosine_of(&excerpt->layout, image, x, y));
+        add_sample(subset, stencil->image[i], x, y, stencil->weight[i], &b);
+    return value_of(&b, cosine_of(&subset->layout, image, x, y));
 }
 
 /* ---- Through the surface ---- */
@@ -156,11 +156,11 @@ static void add_tap(const weft_interpolation *interpolation, int view, const wef
                     const weft_relief_tap *tap, blend *b)
 {
     const int *image = interpolation->order.image + interpolation->order.first[view];
-    weft_texels_around at = weft_texels_around_place(&interpolation->excerpt->layout, tap->u, tap->v);
+    weft_texels_around at = weft_texels_around_place(&interpolation->subset->layout, tap->u, tap->v);
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 3 && at.weight[k] > 0; i++)
             if (light->index[i] >= 0 && light->weight[i] > 0)
-                add_sample(interpolation->excerpt, image[light->index[i]], at.x[k], at.y[k],
+                add_sample(interpolation->subset, image[light->index[i]], at.x[k], at.y[k],
                            (double)(tap->weight * light->weight[i]) * at.weight[k], b);
 }
 
@@ -180,15 +180,15 @@ static weft_rgb look_through(const weft_interpolation *interpolation, const seen
 
 static void predict_through(const weft_interpolation *interpolation, int x, int y, weft_rgb *prediction)
 {
-    const weft_excerpt *excerpt = interpolation->excerpt;
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_texel_subset *subset = interpolation->subset;
+    const weft_dataset_layout *layout = &subset->layout;
     weft_relief_tap tap[3] = {0};
     for (int i = 0, view = -1; i < interpolation->count; i++) {
         const seen_image *seen = &interpolation->seen[i];
         int image = interpolation->image[i];
         if (layout->view_of_image[image] != view) {
             view = layout->view_of_image[image];
-            weft_window_taps(&interpolation->relief, &excerpt->window, layout->width, layout->height, x, y,
+            weft_window_taps(&interpolation->relief, &subset->window, layout->width, layout->height, x, y,
                              layout->view[view], seen->view, seen->weight, tap);
         }
         prediction[i] = look_through(interpolation, seen, tap, cosine_of(layout, image, x, y));
@@ -198,19 +198,19 @@ static void predict_through(const weft_interpolation *interpolation, int x, int 
 weft_code weft_interpolation_predict(const weft_interpolation *interpolation, int x, int y, weft_rgb *prediction,
                                      weft_error *error)
 {
-    const weft_excerpt *excerpt = interpolation->excerpt;
+    const weft_texel_subset *subset = interpolation->subset;
     weft_raw_directions own = {0};
     if (interpolation->seen) {
         predict_through(interpolation, x, y, prediction);
         return WEFT_OK;
     }
     if (!interpolation->stencil)
-        WEFT_TRY(weft_raw_directions_create(&excerpt->layout, &interpolation->order, x, y, &own, error));
+        WEFT_TRY(weft_raw_directions_create(&subset->layout, &interpolation->order, x, y, &own, error));
     for (int i = 0; i < interpolation->count; i++) {
         int image = interpolation->image[i];
         weft_raw_stencil stencil =
             interpolation->stencil ? interpolation->stencil[i] : find_stencil(interpolation, &own, image, x, y);
-        prediction[i] = interpolate(excerpt, &stencil, image, x, y);
+        prediction[i] = interpolate(subset, &stencil, image, x, y);
     }
     weft_raw_directions_free(&own);
     return WEFT_OK;

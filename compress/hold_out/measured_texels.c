@@ -2,7 +2,7 @@
 
 #include "base/integers.h"
 #include "compress/compress.h"
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 #include "compress/run/memory.h"
 
 #include <math.h>
@@ -19,26 +19,26 @@ enum {
     SQUARE_SIDE = 4
 };
 
-/* Of the excerpt, at most; of one with a surface, whose texels see each other, and of those of its texels that are
+/* Of the subset, at most; of one with a surface, whose texels see each other, and of those of its texels that are
  * asked for. */
 static const long most_samples = 1L << 22, most_samples_with_surface = 1L << 25, most_samples_asked = 1L << 23;
 
 void weft_measured_texels_free(weft_measured_texels *texels)
 {
-    weft_excerpt_free(&texels->excerpt);
-    weft_excerpt_free(&texels->alone);
+    weft_texel_subset_free(&texels->subset);
+    weft_texel_subset_free(&texels->alone);
     free(texels->level);
     *texels = (weft_measured_texels){0};
 }
 
-const weft_excerpt *weft_measured_texels_fitted(const weft_measured_texels *texels)
+const weft_texel_subset *weft_measured_texels_fitted(const weft_measured_texels *texels)
 {
-    return texels->alone.samples ? &texels->alone : &texels->excerpt;
+    return texels->alone.samples ? &texels->alone : &texels->subset;
 }
 
 long weft_measured_texels_count(const weft_measured_texels *texels)
 {
-    const weft_dataset_layout *layout = &texels->excerpt.layout;
+    const weft_dataset_layout *layout = &texels->subset.layout;
     const weft_texel_block *asked = &texels->asked;
     return asked->width > 0 ? (long)asked->width * asked->height : (long)layout->width * layout->height;
 }
@@ -110,16 +110,16 @@ weft_code weft_measured_texels_read_spread(weft_dataset *dataset, const weft_com
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     *texels = (weft_measured_texels){.spacing = 1, .neighbours = 1};
-    return weft_excerpt_read(dataset, WEFT_EXCERPT_SCATTERED, weft_measured_texels_spread_side(layout, options),
-                             &texels->excerpt, error);
+    return weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_SCATTERED,
+                                  weft_measured_texels_spread_side(layout, options), &texels->subset, error);
 }
 
 /* The last level that has texels; all of them are spread over the dataset. */
 static void find_levels(const weft_dataset_layout *whole, weft_measured_texels *texels)
 {
-    int count = texels->excerpt.layout.width * texels->excerpt.layout.height, last = 0;
+    int count = texels->subset.layout.width * texels->subset.layout.height, last = 0;
     for (int i = 0; i < count; i++)
-        last = texels->level[i] != WEFT_EXCERPT_NO_LEVEL ? weft_larger(last, texels->level[i]) : last;
+        last = texels->level[i] != WEFT_TEXEL_SUBSET_NO_LEVEL ? weft_larger(last, texels->level[i]) : last;
     texels->neighbours = 1 << last;
     texels->spacing = fmax(1, (double)weft_smaller(whole->width, whole->height) / (2 * texels->neighbours));
 }
@@ -130,8 +130,8 @@ weft_code weft_measured_texels_read_levels(weft_dataset *dataset, const weft_com
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     int singles = options->component_count > 0 ? weft_measured_texels_spread_side(layout, options) : 0;
     *texels = (weft_measured_texels){0};
-    WEFT_TRY(weft_excerpt_read_levels(dataset, singles, &texels->excerpt, &texels->level, error));
-    const weft_dataset_layout *read = &texels->excerpt.layout;
+    WEFT_TRY(weft_texel_subset_read_levels(dataset, singles, &texels->subset, &texels->level, error));
+    const weft_dataset_layout *read = &texels->subset.layout;
     int rows = weft_smaller(singles, layout->height);
     texels->asked = (weft_texel_block){0, rows, read->width, read->height - rows};
     find_levels(layout, texels);
@@ -161,18 +161,19 @@ static weft_code read_with_surface(weft_dataset *dataset, const weft_compress_op
     int side = has_components ? side_of(ASKED_SIDE, most_samples_asked, images) : COMPONENTS_SIDE;
     int read_side = weft_hold_out_surface_side(images);
     WEFT_TRY(require_memory(dataset, options, read_side, has_components ? 0 : side, error));
-    WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, read_side, &texels->excerpt, error));
-    texels->asked = weft_excerpt_middle(&texels->excerpt, side);
-    return has_components ? WEFT_OK : weft_excerpt_crop(&texels->excerpt, &texels->asked, &texels->alone, error);
+    WEFT_TRY(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, read_side, &texels->subset, error));
+    texels->asked = weft_texel_subset_middle(&texels->subset, side);
+    return has_components ? WEFT_OK : weft_texel_subset_crop(&texels->subset, &texels->asked, &texels->alone, error);
 }
 
 /* Small squares; under near lights single texels. */
 static weft_code read_squares(weft_dataset *dataset, const weft_compress_options *options, weft_measured_texels *texels,
                               weft_error *error)
 {
-    const weft_dataset_layout *whole = weft_dataset_get_layout(dataset), *read = &texels->excerpt.layout;
-    weft_excerpt_kind kind = whole->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SMALL_SQUARES;
-    WEFT_TRY(weft_excerpt_read(dataset, kind, side_of_squares(whole, options), &texels->excerpt, error));
+    const weft_dataset_layout *whole = weft_dataset_get_layout(dataset), *read = &texels->subset.layout;
+    weft_texel_subset_kind kind =
+        whole->distance == WEFT_NEAR ? WEFT_TEXEL_SUBSET_REGULAR : WEFT_TEXEL_SUBSET_SMALL_PATCHES;
+    WEFT_TRY(weft_texel_subset_read(dataset, kind, side_of_squares(whole, options), &texels->subset, error));
     texels->spacing = sqrt((double)whole->width * whole->height / ((double)read->width * read->height));
     return WEFT_OK;
 }
@@ -182,11 +183,11 @@ weft_code weft_measured_texels_read(weft_dataset *dataset, const weft_compress_o
 {
     *texels = (weft_measured_texels){.spacing = 1};
     if (fits_neighbours(weft_dataset_get_layout(dataset), options, splits))
-        WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &texels->excerpt, error));
+        WEFT_TRY(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, BLOCK_SIDE, &texels->subset, error));
     else if (weft_dataset_has_surface(dataset))
         WEFT_TRY(read_with_surface(dataset, options, texels, error));
     else
         WEFT_TRY(read_squares(dataset, options, texels, error));
-    texels->neighbours = texels->excerpt.neighbours;
+    texels->neighbours = texels->subset.neighbours;
     return WEFT_OK;
 }

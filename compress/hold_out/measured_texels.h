@@ -2,23 +2,23 @@
 #ifndef WEFT_COMPRESS_HOLD_OUT_MEASURED_TEXELS_H
 #define WEFT_COMPRESS_HOLD_OUT_MEASURED_TEXELS_H
 
-#include "compress/hold_out/excerpt.h"
 #include "compress/hold_out/split.h"
+#include "compress/hold_out/texel_subset.h"
 #include "compress/options/options.h"
 
 /* Freed with weft_measured_texels_free. */
 typedef struct weft_measured_texels {
-    weft_excerpt excerpt;
-    weft_texel_block asked; /* of the excerpt: the texels that are asked for; of width 0: all */
-    weft_excerpt alone;     /* these, where they are fitted alone; else nothing */
-    uint8_t *level;         /* [texel] of the excerpt, where they are of several levels; else NULL */
-    int neighbours;         /* texels beside each other lie in squares, or are means of squares, so many along a side */
-    double spacing;         /* of these squares, in their texels (compress/hold_out/certify.h) */
+    weft_texel_subset subset;
+    weft_texel_block asked;  /* of the subset: the texels that are asked for; of width 0: all */
+    weft_texel_subset alone; /* these, where they are fitted alone; else nothing */
+    uint8_t *level;          /* [texel] of the subset, where they are of several levels; else NULL */
+    int neighbours; /* texels beside each other lie in squares, or are means of squares, so many along a side */
+    double spacing; /* of these squares, in their texels (compress/hold_out/certify.h) */
 } weft_measured_texels;
 void weft_measured_texels_free(weft_measured_texels *texels);
 
 /* What is fitted: the texels that are asked for, or with them what they are seen through. Pure. */
-const weft_excerpt *weft_measured_texels_fitted(const weft_measured_texels *texels);
+const weft_texel_subset *weft_measured_texels_fitted(const weft_measured_texels *texels);
 
 /* How many are asked for. Pure. */
 long weft_measured_texels_count(const weft_measured_texels *texels);

@@ -1,7 +1,7 @@
 #include "compress/hold_out/certify.h"
 
 #include "base/text/json_text.h"
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -49,17 +49,17 @@ typedef struct plane {
     float value[SIDE * SIDE];
 } plane;
 
-static plane plane_of(const weft_excerpt *excerpt, int image, size_t channel)
+static plane plane_of(const weft_texel_subset *subset, int image, size_t channel)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     plane p = {.width = layout->width, .height = layout->height};
     double cosine = (double)weft_dataset_light_direction(layout, image, p.width / 2, p.height / 2).z;
     for (size_t texel = 0; texel < (size_t)p.width * (size_t)p.height; texel++) {
         size_t at = texel * (size_t)layout->image_count + (size_t)image;
-        double sample = (double)weft_float_of_half(excerpt->samples[3 * at + channel]);
+        double sample = (double)weft_float_of_half(subset->samples[3 * at + channel]);
         if (layout->values == WEFT_REFLECTANCE)
             sample *= cosine;
-        p.value[texel] = excerpt->mask[at] ? NAN : (float)sample;
+        p.value[texel] = subset->mask[at] ? NAN : (float)sample;
     }
     return p;
 }
@@ -104,16 +104,16 @@ static void add_plane(const plane *p, const view_of_plane *seen, const weft_cert
         }
 }
 
-static void add_image(const weft_excerpt *excerpt, int image, double displacement, const weft_certificate *c,
+static void add_image(const weft_texel_subset *subset, int image, double displacement, const weft_certificate *c,
                       ring_sums sums[WEFT_MATERIAL_MAX_LEVELS])
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     int x = layout->width / 2, y = layout->height / 2;
     view_of_plane seen = {.light = weft_dataset_light_direction(layout, image, x, y),
                           .view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y)};
     seen.ring = weft_ubo81_ring(weft_angles_of_direction(seen.view).theta_rad);
     for (size_t channel = 0; channel < 3; channel++) {
-        plane p = plane_of(excerpt, image, channel);
+        plane p = plane_of(subset, image, channel);
         for (seen.level = 0; seen.level < c->level_count; seen.level++) {
             seen.displacement = displacement / (1 << seen.level);
             add_plane(&p, &seen, c, &sums[seen.level]);
@@ -137,17 +137,17 @@ static void take_shares(const ring_sums sums[WEFT_MATERIAL_MAX_LEVELS], weft_cer
 
 static weft_code certify(weft_dataset *dataset, const double *displacement, weft_certificate *c, weft_error *error)
 {
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     ring_sums sums[WEFT_MATERIAL_MAX_LEVELS] = {0};
-    WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, SIDE, &excerpt, error));
+    WEFT_TRY(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, SIDE, &subset, error));
     /* Odd, so that it goes through all lights of a view in the course of the views. */
-    int stride = (excerpt.layout.image_count / ENOUGH_IMAGES) | 1;
-    for (int image = 0; image < excerpt.layout.image_count; image += stride) {
-        double texels = displacement[excerpt.layout.view_of_image[image]];
+    int stride = (subset.layout.image_count / ENOUGH_IMAGES) | 1;
+    for (int image = 0; image < subset.layout.image_count; image += stride) {
+        double texels = displacement[subset.layout.view_of_image[image]];
         if (texels > 0)
-            add_image(&excerpt, image, texels, c, sums);
+            add_image(&subset, image, texels, c, sums);
     }
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     take_shares(sums, c);
     return WEFT_OK;
 }

@@ -23,7 +23,7 @@ typedef struct answers {
     float *value[3];
 } answers;
 
-/* The images that are asked for, and of all images of the excerpt which place each has among them, or -1. */
+/* The images that are asked for, and of all images of the subset which place each has among them, or -1. */
 typedef struct asked_images {
     int count;
     int *image, *place;
@@ -43,10 +43,10 @@ static void free_images(asked_images *images)
     free(images->flags);
 }
 
-static weft_code find_images(const weft_excerpt *excerpt, const weft_asked_samples *asked, asked_images *images,
+static weft_code find_images(const weft_texel_subset *subset, const weft_asked_samples *asked, asked_images *images,
                              weft_error *error)
 {
-    size_t all = (size_t)excerpt->layout.image_count;
+    size_t all = (size_t)subset->layout.image_count;
     *images = (asked_images){.image = calloc(all, sizeof *images->image),
                              .place = calloc(all, sizeof *images->place),
                              .flags = calloc(all, 1)};
@@ -87,16 +87,16 @@ static float cosine_missing(const weft_dataset_layout *layout, int image, size_t
     return layout->values == WEFT_REFLECTANCE ? (float)weft_dataset_light_direction(layout, image, x, y).z : 1;
 }
 
-static void put_answers(const weft_excerpt *excerpt, const weft_asked_samples *asked, const weft_asked_samples *moved,
-                        const asked_images *images, answers *a)
+static void put_answers(const weft_texel_subset *subset, const weft_asked_samples *asked,
+                        const weft_asked_samples *moved, const asked_images *images, answers *a)
 {
-    size_t all = (size_t)excerpt->layout.image_count;
+    size_t all = (size_t)subset->layout.image_count;
     for (size_t i = 0; i < asked->count; i++) {
         size_t texel = asked->sample[i] / all, image = asked->sample[i] % all, channel = 0;
         while (channel < i && channel < 2 && asked->sample[i - channel - 1] == asked->sample[i])
             channel++;
         size_t at = 3 * (texel * (size_t)images->count + (size_t)images->place[image]) + channel;
-        float factor = cosine_missing(&excerpt->layout, (int)image, texel);
+        float factor = cosine_missing(&subset->layout, (int)image, texel);
         a->value[0][at] = factor * asked->value[i].sample;
         a->value[1][at] = factor * asked->value[i].prediction;
         a->value[2][at] = factor * (moved ? moved->value[i].prediction : asked->value[i].prediction);
@@ -152,10 +152,10 @@ static int first_of_texel(size_t texel, int stride)
 }
 
 /* Those of one texel, seen from its centre, in every `stride`-th image: for level `level`. */
-static void add_texel(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
+static void add_texel(weft_residuals *residuals, const weft_texel_subset *subset, const asked_images *images,
                       const answers *a, size_t texel, int level, int stride, uint32_t first_image)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     int x = (int)(texel % (size_t)a->width), y = (int)(texel / (size_t)a->width);
     int centre_x = (x << a->level) + (1 << a->level) / 2, centre_y = (y << a->level) + (1 << a->level) / 2;
     for (int i = first_of_texel(texel, stride); i < images->count; i += stride) {
@@ -197,7 +197,7 @@ static bool is_of_level(const answers *a, const weft_residuals_taken *taken, siz
 }
 
 /* Of those texels of `a` that are of level `level`. */
-static weft_code add_level(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
+static weft_code add_level(weft_residuals *residuals, const weft_texel_subset *subset, const asked_images *images,
                            const answers *a, int level, const weft_residuals_taken *taken, weft_error *error)
 {
     size_t texels = (size_t)a->width * (size_t)a->height, own = 0;
@@ -210,43 +210,44 @@ static weft_code add_level(weft_residuals *residuals, const weft_excerpt *excerp
     WEFT_TRY(make_room(residuals, level, count / (size_t)stride + 3 * own, error));
     for (size_t texel = 0; texel < texels; texel++)
         if (is_of_level(a, taken, texel, level))
-            add_texel(residuals, excerpt, images, a, texel, level, stride, taken->first_image);
+            add_texel(residuals, subset, images, a, texel, level, stride, taken->first_image);
     residuals->level_count = weft_larger(level + 1, residuals->level_count);
     return WEFT_OK;
 }
 
 /* Level after level, as long as there are four squares. */
-static weft_code add_levels(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
+static weft_code add_levels(weft_residuals *residuals, const weft_texel_subset *subset, const asked_images *images,
                             answers *a, const weft_residuals_taken *taken, weft_error *error)
 {
     int last = weft_smaller(taken->last_level, WEFT_RESIDUAL_LEVELS - 1);
     for (int level = 0; taken->level && level <= last; level++)
-        WEFT_TRY(add_level(residuals, excerpt, images, a, level, taken, error));
+        WEFT_TRY(add_level(residuals, subset, images, a, level, taken, error));
     if (taken->level)
         return WEFT_OK;
-    WEFT_TRY(add_level(residuals, excerpt, images, a, 0, taken, error));
+    WEFT_TRY(add_level(residuals, subset, images, a, 0, taken, error));
     while (a->level < last && weft_smaller(a->width, a->height) >= 4) {
         answers coarse = {0};
         weft_code code = make_coarser(a, images, &coarse, error);
         free_answers(a);
         *a = coarse;
         WEFT_TRY(code);
-        WEFT_TRY(add_level(residuals, excerpt, images, a, a->level, taken, error));
+        WEFT_TRY(add_level(residuals, subset, images, a, a->level, taken, error));
     }
     return WEFT_OK;
 }
 
-weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *excerpt, const weft_asked_samples *asked,
-                             const weft_asked_samples *moved, const weft_residuals_taken *taken, weft_error *error)
+weft_code weft_residuals_add(weft_residuals *residuals, const weft_texel_subset *subset,
+                             const weft_asked_samples *asked, const weft_asked_samples *moved,
+                             const weft_residuals_taken *taken, weft_error *error)
 {
     asked_images images;
-    answers a = {.width = excerpt->layout.width, .height = excerpt->layout.height};
-    weft_code code = find_images(excerpt, asked, &images, error);
+    answers a = {.width = subset->layout.width, .height = subset->layout.height};
+    weft_code code = find_images(subset, asked, &images, error);
     if (code == WEFT_OK)
         code = allocate(&a, &images, error);
     if (code == WEFT_OK) {
-        put_answers(excerpt, asked, moved, &images, &a);
-        code = add_levels(residuals, excerpt, &images, &a, taken, error);
+        put_answers(subset, asked, moved, &images, &a);
+        code = add_levels(residuals, subset, &images, &a, taken, error);
     }
     free_answers(&a);
     free_images(&images);

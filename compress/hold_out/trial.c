@@ -37,11 +37,11 @@ static void drop_empty_slots(weft_asked_samples *asked)
     asked->count = kept;
 }
 
-/* Sample `at` of the excerpt into the slots from `slot` on, unless nothing is said of it. */
+/* Sample `at` of the subset into the slots from `slot` on, unless nothing is said of it. */
 static void put(const weft_trial *trial, size_t at, uint8_t flags, weft_rgb said, size_t slot,
                 weft_asked_samples *asked)
 {
-    const weft_half *half = trial->excerpt->samples + 3 * at;
+    const weft_half *half = trial->subset->samples + 3 * at;
     const double channel[3] = {(double)said.r, (double)said.g, (double)said.b};
     for (size_t c = 0; c < 3 && !isnan(channel[c]); c++) {
         asked->value[slot + c] =
@@ -55,7 +55,7 @@ static void put(const weft_trial *trial, size_t at, uint8_t flags, weft_rgb said
 static void put_texel(const weft_trial *trial, int x, int y, int first, int count, const weft_rgb *said,
                       weft_asked_samples *asked)
 {
-    const weft_dataset_layout *layout = &trial->excerpt->layout;
+    const weft_dataset_layout *layout = &trial->subset->layout;
     const weft_texel_block *block = &trial->asked;
     size_t texel = (size_t)y * (size_t)layout->width + (size_t)x;
     size_t asked_texel = (size_t)(y - block->y) * (size_t)block->width + (size_t)(x - block->x);
@@ -64,7 +64,7 @@ static void put_texel(const weft_trial *trial, int x, int y, int first, int coun
         size_t at = texel * (size_t)layout->image_count + (size_t)image;
         weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
         weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
-        if (!trial->excerpt->mask[at] && light.z > 0 && view.z > 0)
+        if (!trial->subset->mask[at] && light.z > 0 && view.z > 0)
             put(trial, at, trial->flags[first + i], said[i], 3 * (asked_texel * (size_t)count + (size_t)i), asked);
     }
 }
@@ -73,7 +73,7 @@ static void put_texel(const weft_trial *trial, int x, int y, int first, int coun
 
 static void list_images(const uint8_t *next, weft_trial *trial)
 {
-    int image_count = trial->excerpt->layout.image_count;
+    int image_count = trial->subset->layout.image_count;
     for (int i = 0; i < image_count; i++) {
         if (!trial->held[i])
             continue;
@@ -88,15 +88,15 @@ static void list_images(const uint8_t *next, weft_trial *trial)
     }
 }
 
-weft_code weft_trial_create(const weft_excerpt *excerpt, const uint8_t *held, const uint8_t *next, weft_trial *trial,
-                            weft_error *error)
+weft_code weft_trial_create(const weft_texel_subset *subset, const uint8_t *held, const uint8_t *next,
+                            weft_trial *trial, weft_error *error)
 {
-    size_t images = (size_t)excerpt->layout.image_count;
-    *trial = (weft_trial){.excerpt = excerpt,
+    size_t images = (size_t)subset->layout.image_count;
+    *trial = (weft_trial){.subset = subset,
                           .held = held,
                           .image = calloc(images, sizeof *trial->image),
                           .flags = calloc(images, 1),
-                          .asked = {0, 0, excerpt->layout.width, excerpt->layout.height}};
+                          .asked = {0, 0, subset->layout.width, subset->layout.height}};
     if (!trial->image || !trial->flags)
         return weft_fail_memory(error, "images", images * (sizeof *trial->image + 1));
     list_images(next, trial);
@@ -181,7 +181,7 @@ weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft
     weft_interpolation *interpolation = NULL;
     *held = (weft_asked_samples){0};
     WEFT_TRY(allocate(trial, trial->held_count, held, error));
-    WEFT_TRY(weft_interpolation_create(trial->excerpt, trial->held, trial->image, trial->held_count, through,
+    WEFT_TRY(weft_interpolation_create(trial->subset, trial->held, trial->image, trial->held_count, through,
                                        &interpolation, error));
     weft_code code = ask_texels(trial, NULL, interpolation, held, NULL, error);
     weft_interpolation_free(interpolation);

@@ -163,9 +163,9 @@ static weft_held_bench *open_bench(weft_dataset **dataset)
     weft_held_bench *bench;
     weft_error error = {0};
     expect_ok(weft_dataset_open(path, dataset, &error), &error);
-    expect_ok(
-        weft_held_bench_create(*dataset, WEFT_EXCERPT_BLOCK, 32, (weft_splits_asked){0, 1}, scratch, &bench, &error),
-        &error);
+    expect_ok(weft_held_bench_create(*dataset, WEFT_TEXEL_SUBSET_BLOCK, 32, (weft_splits_asked){0, 1}, scratch, &bench,
+                                     &error),
+              &error);
     return bench;
 }
 

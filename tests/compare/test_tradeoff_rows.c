@@ -137,9 +137,9 @@ static void bard_and_cloth_do_not_see_what_is_held_out(void **state)
     expect_ok(weft_splits_create(&grid, 0, 2, &splits, &error), &error);
     fixture_far_dataset(path, 2, 2, 6, spoilt, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(
-        weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, 32, (weft_splits_asked){0, 1}, scratch, &bench, &error),
-        &error);
+    expect_ok(weft_held_bench_create(dataset, WEFT_TEXEL_SUBSET_BLOCK, 32, (weft_splits_asked){0, 1}, scratch, &bench,
+                                     &error),
+              &error);
     expect_nothing_leaks(bench, "BARD from one light", 0.005);
     expect_nothing_leaks(bench, "analytic cloth", 0.03);
     weft_held_bench_free(bench);
@@ -166,30 +166,30 @@ static void a_block_sees_the_cloth_of_the_whole(void **state)
     const int image[ASKED] = {0, 7, 14, 21, 28};
     weft_rgb of_whole[ASKED], of_block[ASKED];
     weft_dataset *dataset;
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     weft_priced_cloth cloth;
     weft_predictor *whole, *block;
     weft_error error = {0};
     fixture_far_dataset(path, 9, 7, 3, even, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, SIDE, &excerpt, &error), &error);
+    expect_ok(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, SIDE, &subset, &error), &error);
     expect_ok(weft_priced_cloth_open(weave, &cloth, &error), &error);
     const weft_weave_layout tiles = weft_weave_lay_out(&cloth.weave, 0, 0);
     expect_ok(weft_predictor_of_weave(weft_dataset_get_layout(dataset), NULL, &cloth.weave, &tiles, &whole, &error),
               &error);
-    expect_ok(weft_priced_cloth_predictor(&cloth, &excerpt, &block, &error), &error);
-    assert_int_equal(excerpt.layout.width, SIDE);
-    assert_true(excerpt.window.x > 0 && excerpt.window.y > 0);
+    expect_ok(weft_priced_cloth_predictor(&cloth, &subset, &block, &error), &error);
+    assert_int_equal(subset.layout.width, SIDE);
+    assert_true(subset.window.x > 0 && subset.window.y > 0);
     for (int texel = 0; texel < SIDE * SIDE; texel++) {
         int x = texel % SIDE, y = texel / SIDE;
         weft_predictor_predict(block, x, y, image, ASKED, of_block);
-        weft_predictor_predict(whole, excerpt.window.x + x, excerpt.window.y + y, image, ASKED, of_whole);
+        weft_predictor_predict(whole, subset.window.x + x, subset.window.y + y, image, ASKED, of_whole);
         assert_memory_equal(of_block, of_whole, sizeof of_whole);
     }
     weft_predictor_free(block);
     weft_predictor_free(whole);
     weft_priced_cloth_free(&cloth);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     weft_dataset_close(dataset);
     unlink(path);
 }
@@ -210,9 +210,9 @@ static void a_fitted_cloth_lies_where_it_was_fitted(void **state)
     fixture_cloth.width = fixture_cloth.height = 13.3, fixture_cloth.left = 5.2, fixture_cloth.top = 9.7;
     fixture_far_dataset(path, WHOLE, WHOLE, 3, fixture_woven, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(
-        weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, SIDE, (weft_splits_asked){0, 1}, scratch, &bench, &error),
-        &error);
+    expect_ok(weft_held_bench_create(dataset, WEFT_TEXEL_SUBSET_BLOCK, SIDE, (weft_splits_asked){0, 1}, scratch, &bench,
+                                     &error),
+              &error);
     int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &parts, model);
     expect_ok(weft_held_bench_measure(bench, find(model, count, "analytic cloth"), &measured, &error), &error);
     print_message("analytic cloth on a block: %.4f\n", measured.held[WEFT_SAMPLES_ALL].relative_rmse);

@@ -167,12 +167,12 @@ static void rings_without_images_have_their_neighbours_factor(void **state)
 /* ---- Means over squares ---- */
 
 /* Where fewer are wanted, every texel and every image gives some. */
-static void expect_third_of_everything(const weft_excerpt *excerpt, const weft_asked_samples *asked)
+static void expect_third_of_everything(const weft_texel_subset *subset, const weft_asked_samples *asked)
 {
     weft_residuals some = {0};
     size_t of_image[3] = {0}, most = asked->count / 3;
     const weft_residuals_taken taken = {.most = most, .last_level = WEFT_RESIDUAL_LEVELS};
-    assert_int_equal(weft_residuals_add(&some, excerpt, asked, NULL, &taken, NULL), WEFT_OK);
+    assert_int_equal(weft_residuals_add(&some, subset, asked, NULL, &taken, NULL), WEFT_OK);
     assert_int_equal(some.count[0], most);
     for (size_t i = 0; i < most; i++)
         of_image[some.value[0][i].image]++;
@@ -187,11 +187,11 @@ static void coarser_levels_are_of_means(void **state)
 {
     (void)state;
     enum { SIDE = 8, IMAGES = 3, COUNT = SIDE * SIDE * IMAGES * 3 };
-    weft_excerpt excerpt = {.layout = {.width = SIDE, .height = SIDE, .image_count = IMAGES, .view_count = 1}};
-    assert_int_equal(weft_dataset_layout_allocate(&excerpt.layout, NULL), WEFT_OK);
+    weft_texel_subset subset = {.layout = {.width = SIDE, .height = SIDE, .image_count = IMAGES, .view_count = 1}};
+    assert_int_equal(weft_dataset_layout_allocate(&subset.layout, NULL), WEFT_OK);
     for (int i = 0; i < IMAGES; i++)
-        excerpt.layout.light[i] = weft_direction_of_angles((weft_angles){weft_rad_of_deg(30 * i), 0});
-    excerpt.layout.view[0] = weft_vec3_of(0, 0, 1);
+        subset.layout.light[i] = weft_direction_of_angles((weft_angles){weft_rad_of_deg(30 * i), 0});
+    subset.layout.view[0] = weft_vec3_of(0, 0, 1);
     static weft_compared value[COUNT];
     static uint8_t group[COUNT];
     static uint32_t sample[COUNT];
@@ -205,7 +205,7 @@ static void coarser_levels_are_of_means(void **state)
     const weft_asked_samples asked = {COUNT, value, group, sample};
     weft_residuals residuals = {0};
     const weft_residuals_taken taken = {.first_image = 5, .most = 1 << 20, .last_level = WEFT_RESIDUAL_LEVELS};
-    assert_int_equal(weft_residuals_add(&residuals, &excerpt, &asked, &asked, &taken, NULL), WEFT_OK);
+    assert_int_equal(weft_residuals_add(&residuals, &subset, &asked, &asked, &taken, NULL), WEFT_OK);
     assert_int_equal(residuals.level_count, 3);
     assert_int_equal(residuals.count[0], COUNT);
     assert_int_equal(residuals.count[1], COUNT / 4);
@@ -221,11 +221,11 @@ static void coarser_levels_are_of_means(void **state)
         assert_true(r->moved == 0);
     }
     weft_residuals_free(&residuals);
-    expect_third_of_everything(&excerpt, &asked);
-    weft_dataset_layout_free(&excerpt.layout);
+    expect_third_of_everything(&subset, &asked);
+    weft_dataset_layout_free(&subset.layout);
 }
 
-/* Errors of 8, 4, 2 and 1 at the levels of an excerpt whose texels lie 8 apart. */
+/* Errors of 8, 4, 2 and 1 at the levels of a subset whose texels lie 8 apart. */
 static weft_certificate certify_levels(int neighbours)
 {
     weft_residuals residuals = {.level_count = 4};
@@ -403,26 +403,26 @@ static void put_provenance(const char *path, const char *provenance)
     weft_dataset *dataset;
     weft_dataset_writer *writer;
     weft_error error = {0};
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, 64, &excerpt, &error), &error);
+    expect_ok(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, 64, &subset, &error), &error);
     weft_dataset_close(dataset);
-    free(excerpt.layout.provenance);
-    excerpt.layout.provenance = strdup(provenance);
-    size_t texels = (size_t)excerpt.layout.width * (size_t)excerpt.layout.height;
-    size_t images = (size_t)excerpt.layout.image_count;
+    free(subset.layout.provenance);
+    subset.layout.provenance = strdup(provenance);
+    size_t texels = (size_t)subset.layout.width * (size_t)subset.layout.height;
+    size_t images = (size_t)subset.layout.image_count;
     weft_half *samples = malloc(3 * texels * sizeof *samples);
     uint8_t *mask = calloc(texels, 1);
-    expect_ok(weft_dataset_writer_create(path, &excerpt.layout, &writer, &error), &error);
+    expect_ok(weft_dataset_writer_create(path, &subset.layout, &writer, &error), &error);
     for (size_t image = 0; image < images; image++) {
         for (size_t texel = 0; texel < texels; texel++)
-            memcpy(samples + 3 * texel, excerpt.samples + 3 * (texel * images + image), 3 * sizeof *samples);
+            memcpy(samples + 3 * texel, subset.samples + 3 * (texel * images + image), 3 * sizeof *samples);
         expect_ok(weft_dataset_writer_put_image(writer, (int)image, samples, mask, &error), &error);
     }
     expect_ok(weft_dataset_writer_finish(writer, NULL, &error), &error);
     free(samples);
     free(mask);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
 }
 
 /* 0.3 texels times a slope of hypot(0.01, 0.02) cos(theta), 1.96 times, over 0.1; of means over 2 x 2 texels the same,
@@ -455,7 +455,7 @@ static void a_displacement_costs_the_slope(void **state)
 enum { CARDS = 9 };
 
 /* Each photograph in turn is left out of fit and certificate, and then asked for. */
-static void put_card(const weft_excerpt *excerpt, int card, weft_residuals *unseen, double *covered)
+static void put_card(const weft_texel_subset *subset, int card, weft_residuals *unseen, double *covered)
 {
     uint8_t held[CARDS] = {0};
     weft_dataset *others;
@@ -466,19 +466,19 @@ static void put_card(const weft_excerpt *excerpt, int card, weft_residuals *unse
     weft_asked_samples asked, none;
     weft_error error = {0};
     held[card] = WEFT_HELD_IMAGE;
-    expect_ok(weft_excerpt_write(excerpt, held, "others.btf.h5", &others, &error), &error);
+    expect_ok(weft_texel_subset_write(subset, held, "others.btf.h5", &others, &error), &error);
     weft_compress_options options = weft_compress_default_options();
     options = weft_compress_settle(&options, others);
     expect_ok(weft_hold_out_measure(others, &options, 1, "split.btf.h5", NULL, &measured, &error), &error);
     assert_true(measured.has_certificate && !measured.certificate.over_images);
     assert_int_equal(measured.certificate.image_count, CARDS - 1);
     expect_ok(weft_compress(others, &options, NULL, &material, NULL, &error), &error);
-    expect_ok(weft_predictor_of_material(&excerpt->layout, &material, &predictor, &error), &error);
-    expect_ok(weft_trial_create(excerpt, held, held, &trial, &error), &error);
+    expect_ok(weft_predictor_of_material(&subset->layout, &material, &predictor, &error), &error);
+    expect_ok(weft_trial_create(subset, held, held, &trial, &error), &error);
     expect_ok(weft_trial_ask(&trial, predictor, &asked, &none, &error), &error);
     unseen->count[0] = 0;
     const weft_residuals_taken taken = {.most = 1 << 20};
-    expect_ok(weft_residuals_add(unseen, excerpt, &asked, NULL, &taken, &error), &error);
+    expect_ok(weft_residuals_add(unseen, subset, &asked, NULL, &taken, &error), &error);
     covered[0] += measure(&measured.certificate, unseen).all.covered * (double)unseen->count[0];
     covered[1] += (double)unseen->count[0];
     weft_asked_samples_free(&asked);
@@ -500,7 +500,7 @@ static void flash_photographs_of_a_card_are_covered(void **state)
     weft_import_options options = weft_import_defaults();
     weft_import_report report;
     weft_dataset *dataset;
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     weft_residuals unseen = {0};
     weft_error error = {0};
     double covered[2] = {0};
@@ -508,14 +508,14 @@ static void flash_photographs_of_a_card_are_covered(void **state)
     expect_ok(weft_import(WEFT_SHARED "/real/cards-blue", "cards.btf.h5", &options, NULL, &report, &error), &error);
     weft_import_report_free(&report);
     expect_ok(weft_dataset_open("cards.btf.h5", &dataset, &error), &error);
-    expect_ok(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, 12, &excerpt, &error), &error);
+    expect_ok(weft_texel_subset_read(dataset, WEFT_TEXEL_SUBSET_BLOCK, 12, &subset, &error), &error);
     weft_dataset_close(dataset);
     for (int card = 0; card < CARDS; card++)
-        put_card(&excerpt, card, &unseen, covered);
+        put_card(&subset, card, &unseen, covered);
     print_message("12 x 12, %.0f values: covered %.4f\n", covered[1], covered[0] / covered[1]);
     assert_true(covered[0] / covered[1] > 0.93 && covered[0] / covered[1] < 0.97);
     weft_residuals_free(&unseen);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
 }
 
 int test_certify(void)

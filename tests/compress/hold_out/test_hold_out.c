@@ -2,8 +2,8 @@
 #include "tests/compare/fixture.h"
 
 #include "btf/direction/direction.h"
-#include "compress/hold_out/excerpt.h"
 #include "compress/hold_out/hold_out.h"
+#include "compress/hold_out/texel_subset.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -253,21 +253,21 @@ static weft_rgb by_place(int x, int y, weft_vec3 light, weft_vec3 view)
     return (weft_rgb){0.01 * x, 0.01 * y, 0.1 + 0.1 * view.z};
 }
 
-static weft_excerpt read_excerpt(weft_excerpt_kind kind, int side)
+static weft_texel_subset read_subset(weft_texel_subset_kind kind, int side)
 {
     weft_dataset *dataset;
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     weft_error error = {0};
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_excerpt_read(dataset, kind, side, &excerpt, &error), &error);
+    expect_ok(weft_texel_subset_read(dataset, kind, side, &subset, &error), &error);
     weft_dataset_close(dataset);
-    return excerpt;
+    return subset;
 }
 
 /* The place that a texel of by_place says it has, in a far dataset: red is x, green y, times the cosine of 1. */
-static void place_of(const weft_excerpt *excerpt, int texel, int *x, int *y)
+static void place_of(const weft_texel_subset *subset, int texel, int *x, int *y)
 {
-    const weft_half *half = excerpt->samples + 3 * (size_t)texel * (size_t)excerpt->layout.image_count;
+    const weft_half *half = subset->samples + 3 * (size_t)texel * (size_t)subset->layout.image_count;
     *x = (int)lround(100 * (double)weft_float_of_half(half[0]));
     *y = (int)lround(100 * (double)weft_float_of_half(half[1]));
 }
@@ -278,18 +278,18 @@ static void small_squares_are_one_of_every_cell(void **state)
     (void)state;
     enum { SIDE = 12, SQUARE = 4 };
     fixture_far_dataset(path, 31, 26, 2, by_place, FIXTURE_MASK_NONE);
-    weft_excerpt excerpt = read_excerpt(WEFT_EXCERPT_SMALL_SQUARES, SIDE);
-    assert_int_equal(excerpt.neighbours, SQUARE);
+    weft_texel_subset subset = read_subset(WEFT_TEXEL_SUBSET_SMALL_PATCHES, SIDE);
+    assert_int_equal(subset.neighbours, SQUARE);
     for (int texel = 0; texel < SIDE * SIDE; texel++) {
         int i = texel % SIDE, j = texel / SIDE, x, y, first_x, first_y;
-        place_of(&excerpt, texel, &x, &y);
-        place_of(&excerpt, (j - j % SQUARE) * SIDE + i - i % SQUARE, &first_x, &first_y);
+        place_of(&subset, texel, &x, &y);
+        place_of(&subset, (j - j % SQUARE) * SIDE + i - i % SQUARE, &first_x, &first_y);
         assert_int_equal(x - first_x, i % SQUARE);
         assert_int_equal(y - first_y, j % SQUARE);
         assert_in_range(first_x, 31 * (i / SQUARE) / 3, 31 * (i / SQUARE + 1) / 3 - SQUARE);
         assert_in_range(first_y, 26 * (j / SQUARE) / 3, 26 * (j / SQUARE + 1) / 3 - SQUARE);
     }
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     unlink(path);
 }
 
@@ -297,19 +297,19 @@ static void scattered_texels_are_one_of_every_cell(void **state)
 {
     (void)state;
     fixture_far_dataset(path, 24, 20, 2, by_place, FIXTURE_MASK_NONE);
-    weft_excerpt excerpt = read_excerpt(WEFT_EXCERPT_SCATTERED, 6);
-    assert_int_equal(excerpt.layout.width, 6);
-    assert_int_equal(excerpt.layout.height, 6);
+    weft_texel_subset subset = read_subset(WEFT_TEXEL_SUBSET_SCATTERED, 6);
+    assert_int_equal(subset.layout.width, 6);
+    assert_int_equal(subset.layout.height, 6);
     int phases = 0;
     for (int texel = 0; texel < 36; texel++) {
         int x, y;
-        place_of(&excerpt, texel, &x, &y);
+        place_of(&subset, texel, &x, &y);
         assert_in_range(x, 4 * (texel % 6), 4 * (texel % 6) + 3);
         assert_in_range(y, 20 * (texel / 6) / 6, 20 * (texel / 6 + 1) / 6 - 1);
         phases |= 1 << x % 4;
     }
     assert_int_equal(phases, 15);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     unlink(path);
 }
 
@@ -319,21 +319,21 @@ static void texels_of_levels_are_means_of_what_they_cover(void **state)
     (void)state;
     enum { SIDE = 4, COUNT = 16 + 64 + 42 + 9 };
     weft_dataset *dataset;
-    weft_excerpt excerpt;
+    weft_texel_subset subset;
     weft_error error = {0};
     uint8_t *level;
-    int of_level[WEFT_EXCERPT_LAST_LEVEL + 1] = {0}, places[WEFT_EXCERPT_LAST_LEVEL + 1] = {0}, odd = 0;
+    int of_level[WEFT_TEXEL_SUBSET_LAST_LEVEL + 1] = {0}, places[WEFT_TEXEL_SUBSET_LAST_LEVEL + 1] = {0}, odd = 0;
     fixture_far_dataset(path, 31, 26, 2, by_place, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_excerpt_read_levels(dataset, SIDE, &excerpt, &level, &error), &error);
+    expect_ok(weft_texel_subset_read_levels(dataset, SIDE, &subset, &level, &error), &error);
     weft_dataset_close(dataset);
-    assert_int_equal(excerpt.layout.width, SIDE);
-    assert_int_equal(excerpt.layout.height, (COUNT + SIDE - 1) / SIDE);
-    for (int texel = 0; texel < excerpt.layout.width * excerpt.layout.height; texel++) {
-        const weft_half *half = excerpt.samples + 3 * (size_t)texel * (size_t)excerpt.layout.image_count;
+    assert_int_equal(subset.layout.width, SIDE);
+    assert_int_equal(subset.layout.height, (COUNT + SIDE - 1) / SIDE);
+    for (int texel = 0; texel < subset.layout.width * subset.layout.height; texel++) {
+        const weft_half *half = subset.samples + 3 * (size_t)texel * (size_t)subset.layout.image_count;
         int k = level[texel];
         if (texel >= COUNT) {
-            assert_int_equal(k, WEFT_EXCERPT_NO_LEVEL);
+            assert_int_equal(k, WEFT_TEXEL_SUBSET_NO_LEVEL);
             continue;
         }
         /* The mean place of a whole texel of its level. */
@@ -352,7 +352,7 @@ static void texels_of_levels_are_means_of_what_they_cover(void **state)
     assert_int_equal(of_level[3], 3 * 3);
     assert_int_equal(places[3], 3 * 3 + 3 * 300);
     assert_in_range(odd, 3, 13);
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     free(level);
     unlink(path);
 }
@@ -365,13 +365,13 @@ static void squares_are_one_of_every_cell(void **state)
     (void)state;
     enum { SIDE = 32, SQUARE = 16 };
     fixture_far_dataset(path, 56, 60, 2, by_place, FIXTURE_MASK_NONE);
-    weft_excerpt excerpt = read_excerpt(WEFT_EXCERPT_SQUARES, SIDE);
+    weft_texel_subset subset = read_subset(WEFT_TEXEL_SUBSET_PATCHES, SIDE);
     int first_x[4], first_y[4];
-    assert_int_equal(excerpt.layout.width, SIDE);
-    assert_int_equal(excerpt.layout.height, SIDE);
+    assert_int_equal(subset.layout.width, SIDE);
+    assert_int_equal(subset.layout.height, SIDE);
     for (int texel = 0; texel < SIDE * SIDE; texel++) {
         int i = texel % SIDE, j = texel / SIDE, square = 2 * (j / SQUARE) + i / SQUARE, x, y;
-        place_of(&excerpt, texel, &x, &y);
+        place_of(&subset, texel, &x, &y);
         if (i % SQUARE == 0 && j % SQUARE == 0) {
             first_x[square] = x;
             first_y[square] = y;
@@ -382,14 +382,14 @@ static void squares_are_one_of_every_cell(void **state)
         assert_int_equal(y, first_y[square] + j % SQUARE);
     }
     assert_true(first_x[1] - first_x[0] != 28 || first_x[3] - first_x[2] != 28);
-    weft_excerpt_free(&excerpt);
-    excerpt = read_excerpt(WEFT_EXCERPT_SQUARES, 64);
+    weft_texel_subset_free(&subset);
+    subset = read_subset(WEFT_TEXEL_SUBSET_PATCHES, 64);
     for (int texel = 0; texel < 56 * 60; texel++) {
         int x, y;
-        place_of(&excerpt, texel, &x, &y);
+        place_of(&subset, texel, &x, &y);
         assert_int_equal(x + 56 * y, texel);
     }
-    weft_excerpt_free(&excerpt);
+    weft_texel_subset_free(&subset);
     unlink(path);
 }
 
@@ -406,25 +406,25 @@ static void texels_of_a_near_dataset_keep_their_directions(void **state)
     weft_dataset *dataset;
     assert_int_equal(weft_dataset_open(path, &dataset, NULL), WEFT_OK);
     const weft_dataset_layout *whole = weft_dataset_get_layout(dataset);
-    for (int kind = WEFT_EXCERPT_REGULAR; kind <= WEFT_EXCERPT_BLOCK; kind++) {
-        weft_excerpt excerpt = read_excerpt((weft_excerpt_kind)kind, 6);
-        int stride = kind == WEFT_EXCERPT_REGULAR ? 5 : 1, first = kind == WEFT_EXCERPT_REGULAR ? 2 : 12;
+    for (int kind = WEFT_TEXEL_SUBSET_REGULAR; kind <= WEFT_TEXEL_SUBSET_BLOCK; kind++) {
+        weft_texel_subset subset = read_subset((weft_texel_subset_kind)kind, 6);
+        int stride = kind == WEFT_TEXEL_SUBSET_REGULAR ? 5 : 1, first = kind == WEFT_TEXEL_SUBSET_REGULAR ? 2 : 12;
         for (int texel = 0; texel < 36; texel++) {
             int i = texel % 6, j = texel / 6, x = first + stride * i, y = first + stride * j;
             uint8_t mask[5];
             weft_half sample[15];
             assert_int_equal(weft_dataset_read_block(dataset, x, y, 1, 1, sample, mask, NULL), WEFT_OK);
-            assert_memory_equal(sample, excerpt.samples + (size_t)15 * (size_t)texel, sizeof sample);
+            assert_memory_equal(sample, subset.samples + (size_t)15 * (size_t)texel, sizeof sample);
             for (int image = 0; image < 5; image++) {
                 weft_vec3 a = weft_dataset_light_direction(whole, image, x, y);
-                weft_vec3 b = weft_dataset_light_direction(&excerpt.layout, image, i, j);
+                weft_vec3 b = weft_dataset_light_direction(&subset.layout, image, i, j);
                 assert_true(weft_length(weft_subtract(a, b)) < 1e-6);
                 a = weft_dataset_view_direction(whole, whole->view_of_image[image], x, y);
-                b = weft_dataset_view_direction(&excerpt.layout, excerpt.layout.view_of_image[image], i, j);
+                b = weft_dataset_view_direction(&subset.layout, subset.layout.view_of_image[image], i, j);
                 assert_true(weft_length(weft_subtract(a, b)) < 1e-6);
             }
         }
-        weft_excerpt_free(&excerpt);
+        weft_texel_subset_free(&subset);
     }
     weft_dataset_close(dataset);
     unlink(path);
@@ -439,23 +439,23 @@ static void what_is_written_lacks_what_is_held_out(void **state)
     weft_half samples[3 * ALL];
     uint8_t mask[ALL] = {0};
     const uint8_t held[ALL] = {0, 0, 0, WEFT_HELD_VIEW, WEFT_HELD_VIEW, 0, 0, 0};
-    weft_excerpt excerpt = {
+    weft_texel_subset subset = {
         .layout = {.width = 1, .height = 1, .image_count = ALL, .view_count = VIEWS, .texel_pitch_mm = 1},
         .samples = samples,
         .mask = mask,
         .opacity = opacity,
         .frames = frame};
-    assert_int_equal(weft_dataset_layout_allocate(&excerpt.layout, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_layout_allocate(&subset.layout, NULL), WEFT_OK);
     for (int i = 0; i < ALL; i++) {
-        excerpt.layout.light[i] = weft_direction_of_angles(weft_ubo81_angles(i));
-        excerpt.layout.view_of_image[i] = i < 3 ? 0 : i < 5 ? 1 : i < 6 ? 2 : 3;
+        subset.layout.light[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+        subset.layout.view_of_image[i] = i < 3 ? 0 : i < 5 ? 1 : i < 6 ? 2 : 3;
         samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = weft_half_of_float((float)i);
     }
     for (int view = 0; view < VIEWS; view++)
-        excerpt.layout.view[view] = weft_direction_of_angles(weft_ubo81_angles(10 * view));
+        subset.layout.view[view] = weft_direction_of_angles(weft_ubo81_angles(10 * view));
     weft_dataset *dataset;
     weft_error error = {0};
-    expect_ok(weft_excerpt_write(&excerpt, held, scratch, &dataset, &error), &error);
+    expect_ok(weft_texel_subset_write(&subset, held, scratch, &dataset, &error), &error);
     assert_int_not_equal(access(scratch, F_OK), 0);
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     assert_int_equal(layout->image_count, KEPT);
@@ -474,7 +474,7 @@ static void what_is_written_lacks_what_is_held_out(void **state)
     expect_ok(weft_dataset_read_frames(dataset, 0, 1, read_frame, &error), &error);
     assert_float_equal(read_frame[1], 0.6, 0.001);
     weft_dataset_close(dataset);
-    weft_dataset_layout_free(&excerpt.layout);
+    weft_dataset_layout_free(&subset.layout);
 }
 
 /* ---- Errors ---- */

@@ -293,9 +293,9 @@ static void prices_are_of_what_is_played(void **state)
     weft_error error = {0};
     write_dataset(true, 1);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(
-        weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, 20, (weft_splits_asked){0, 1}, scratch, &bench, &error),
-        &error);
+    expect_ok(weft_held_bench_create(dataset, WEFT_TEXEL_SUBSET_BLOCK, 20, (weft_splits_asked){0, 1}, scratch, &bench,
+                                     &error),
+              &error);
     weft_held_error lobe = ask(bench, dataset, "1 lobe"), flat = ask(bench, dataset, "8 components, without heights"),
                     through = ask(bench, dataset, "8 components, through heights"),
                     raw_flat = ask(bench, dataset, "the photographs, without heights"),

@@ -1,4 +1,4 @@
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 
 #include "base/integers.h"
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LARGEST_SIDE = 1 << WEFT_EXCERPT_LAST_LEVEL, FEWEST = 4, RUN = 64 };
+enum { LARGEST_SIDE = 1 << WEFT_TEXEL_SUBSET_LAST_LEVEL, FEWEST = 4, RUN = 64 };
 
 /* ---- Which texels ---- */
 
@@ -15,7 +15,7 @@ typedef struct level_texel {
     int x, y, side, level;
 } level_texel;
 
-/* In the order of the excerpt. */
+/* In the order of the subset. */
 typedef struct level_texels {
     int columns, rows, count;
     level_texel *texel; /* [columns x rows] */
@@ -43,19 +43,20 @@ static void add_level(const weft_dataset_layout *layout, int level, int most, le
 /* The last row is filled up with its last texel. */
 static weft_code choose_texels(const weft_dataset_layout *layout, int side, level_texels *all, weft_error *error)
 {
-    int columns = side > 0 ? texels_along(layout->width, 0, side) : WEFT_EXCERPT_LEVEL_SIDE;
+    int columns = side > 0 ? texels_along(layout->width, 0, side) : WEFT_TEXEL_SUBSET_LEVEL_SIDE;
     size_t most = (size_t)side * (size_t)side +
-                  WEFT_EXCERPT_LAST_LEVEL * WEFT_EXCERPT_LEVEL_SIDE * WEFT_EXCERPT_LEVEL_SIDE + (size_t)columns;
+                  WEFT_TEXEL_SUBSET_LAST_LEVEL * WEFT_TEXEL_SUBSET_LEVEL_SIDE * WEFT_TEXEL_SUBSET_LEVEL_SIDE +
+                  (size_t)columns;
     *all = (level_texels){.columns = columns, .texel = calloc(most, sizeof *all->texel)};
     if (!all->texel)
         return weft_fail_memory(error, "texels", most * sizeof *all->texel);
     if (side > 0)
         add_level(layout, 0, side, all);
-    for (int level = 1; level <= WEFT_EXCERPT_LAST_LEVEL; level++)
-        add_level(layout, level, WEFT_EXCERPT_LEVEL_SIDE, all);
+    for (int level = 1; level <= WEFT_TEXEL_SUBSET_LAST_LEVEL; level++)
+        add_level(layout, level, WEFT_TEXEL_SUBSET_LEVEL_SIDE, all);
     while (all->count % columns > 0) {
         all->texel[all->count] = all->texel[all->count - 1];
-        all->texel[all->count++].level = WEFT_EXCERPT_NO_LEVEL;
+        all->texel[all->count++].level = WEFT_TEXEL_SUBSET_NO_LEVEL;
     }
     all->rows = all->count / columns;
     return WEFT_OK;
@@ -92,22 +93,23 @@ static void average_samples(const weft_half *samples, const uint8_t *mask, size_
         average_run(samples, mask, texels, images, first, first + RUN < images ? first + RUN : images, mean, mean_mask);
 }
 
-static weft_code read_samples(weft_dataset *dataset, const level_texels *all, weft_excerpt *excerpt, weft_error *error)
+static weft_code read_samples(weft_dataset *dataset, const level_texels *all, weft_texel_subset *subset,
+                              weft_error *error)
 {
-    size_t images = (size_t)excerpt->layout.image_count, count = (size_t)all->count,
+    size_t images = (size_t)subset->layout.image_count, count = (size_t)all->count,
            block = LARGEST_SIDE * LARGEST_SIDE * images;
     weft_half *samples = malloc(3 * block * sizeof *samples);
     uint8_t *mask = malloc(block);
-    excerpt->samples = malloc(3 * count * images * sizeof *excerpt->samples);
-    excerpt->mask = malloc(count * images);
-    bool has_memory = samples && mask && excerpt->samples && excerpt->mask;
+    subset->samples = malloc(3 * count * images * sizeof *subset->samples);
+    subset->mask = malloc(count * images);
+    bool has_memory = samples && mask && subset->samples && subset->mask;
     weft_code code = has_memory ? WEFT_OK : weft_fail_memory(error, "samples", 7 * (count * images + block));
     for (size_t i = 0; code == WEFT_OK && i < count; i++) {
         const level_texel *texel = &all->texel[i];
         code = weft_dataset_read_block(dataset, texel->x, texel->y, texel->side, texel->side, samples, mask, error);
         if (code == WEFT_OK)
             average_samples(samples, mask, (size_t)texel->side * (size_t)texel->side, images,
-                            excerpt->samples + 3 * i * images, excerpt->mask + i * images);
+                            subset->samples + 3 * i * images, subset->mask + i * images);
     }
     free(samples);
     free(mask);
@@ -163,7 +165,7 @@ static void straighten(float *frames, int count)
 
 /* ---- The whole ---- */
 
-static weft_code read_all(weft_dataset *dataset, const level_texels *all, weft_excerpt *excerpt, uint8_t **level,
+static weft_code read_all(weft_dataset *dataset, const level_texels *all, weft_texel_subset *subset, uint8_t **level,
                           weft_error *error)
 {
     const weft_dataset_layout *source = weft_dataset_get_layout(dataset);
@@ -172,30 +174,30 @@ static weft_code read_all(weft_dataset *dataset, const level_texels *all, weft_e
         return weft_fail_memory(error, "texels", (size_t)all->count);
     for (int i = 0; i < all->count; i++)
         (*level)[i] = (uint8_t)all->texel[i].level;
-    WEFT_TRY(
-        weft_excerpt_make_layout(source, all->columns, all->rows, 1, weft_vec3_of(0, 0, 0), &excerpt->layout, error));
-    WEFT_TRY(read_samples(dataset, all, excerpt, error));
+    WEFT_TRY(weft_texel_subset_make_layout(source, all->columns, all->rows, 1, weft_vec3_of(0, 0, 0), &subset->layout,
+                                           error));
+    WEFT_TRY(read_samples(dataset, all, subset, error));
     if (weft_dataset_has_opacity(dataset))
-        WEFT_TRY(read_numbers(dataset, all, weft_dataset_read_opacity, (size_t)source->view_count, &excerpt->opacity,
-                              error));
+        WEFT_TRY(
+            read_numbers(dataset, all, weft_dataset_read_opacity, (size_t)source->view_count, &subset->opacity, error));
     if (!weft_dataset_has_frames(dataset))
         return WEFT_OK;
-    WEFT_TRY(read_numbers(dataset, all, weft_dataset_read_frames, 6, &excerpt->frames, error));
-    straighten(excerpt->frames, all->count);
+    WEFT_TRY(read_numbers(dataset, all, weft_dataset_read_frames, 6, &subset->frames, error));
+    straighten(subset->frames, all->count);
     return WEFT_OK;
 }
 
-weft_code weft_excerpt_read_levels(weft_dataset *dataset, int side, weft_excerpt *excerpt, uint8_t **level,
-                                   weft_error *error)
+weft_code weft_texel_subset_read_levels(weft_dataset *dataset, int side, weft_texel_subset *subset, uint8_t **level,
+                                        weft_error *error)
 {
     const weft_dataset_layout *source = weft_dataset_get_layout(dataset);
     level_texels all;
     *level = NULL;
-    *excerpt = (weft_excerpt){.window = {0, 0, source->width, source->height}, .neighbours = 1};
-    weft_dataset_size_mm(source, excerpt->whole_mm);
+    *subset = (weft_texel_subset){.window = {0, 0, source->width, source->height}, .neighbours = 1};
+    weft_dataset_size_mm(source, subset->whole_mm);
     weft_code code = choose_texels(source, side, &all, error);
     if (code == WEFT_OK)
-        code = read_all(dataset, &all, excerpt, level, error);
+        code = read_all(dataset, &all, subset, level, error);
     free(all.texel);
     return code;
 }

@@ -1,4 +1,4 @@
-#include "compress/hold_out/excerpt.h"
+#include "compress/hold_out/texel_subset.h"
 
 #include "base/integers.h"
 
@@ -8,16 +8,16 @@
 
 /* ---- Which texels ---- */
 
-/* Columns and rows of the excerpt lie `stride` apart from the first one on; a scattered texel is moved inside its cell
+/* Columns and rows of the subset lie `stride` apart from the first one on; a scattered texel is moved inside its cell
  * of width / columns by height / rows, and so is a square. */
 typedef struct texel_choice {
-    weft_excerpt_kind kind;
+    weft_texel_subset_kind kind;
     int square_side;   /* of neighbours; 0 where there are no squares */
     int width, height; /* of the dataset */
     int columns, rows, stride, first_x, first_y;
 } texel_choice;
 
-static texel_choice choose_texels(const weft_dataset_layout *layout, weft_excerpt_kind kind, int side)
+static texel_choice choose_texels(const weft_dataset_layout *layout, weft_texel_subset_kind kind, int side)
 {
     texel_choice choice = {.kind = kind,
                            .width = layout->width,
@@ -25,9 +25,9 @@ static texel_choice choose_texels(const weft_dataset_layout *layout, weft_excerp
                            .columns = weft_smaller(side, layout->width),
                            .rows = weft_smaller(side, layout->height),
                            .stride = 1};
-    if (kind == WEFT_EXCERPT_SQUARES || kind == WEFT_EXCERPT_SMALL_SQUARES)
-        choice.square_side = kind == WEFT_EXCERPT_SQUARES ? 16 : 4;
-    if (kind == WEFT_EXCERPT_REGULAR)
+    if (kind == WEFT_TEXEL_SUBSET_PATCHES || kind == WEFT_TEXEL_SUBSET_SMALL_PATCHES)
+        choice.square_side = kind == WEFT_TEXEL_SUBSET_PATCHES ? 16 : 4;
+    if (kind == WEFT_TEXEL_SUBSET_REGULAR)
         choice.stride = weft_smaller(layout->width / choice.columns, layout->height / choice.rows);
     choice.first_x = (layout->width - (choice.columns - 1) * choice.stride - 1) / 2;
     choice.first_y = (layout->height - (choice.rows - 1) * choice.stride - 1) / 2;
@@ -51,12 +51,12 @@ static void place_of_square(const texel_choice *choice, int i, int j, int *x, in
     *y = place_in_square(j, choice->rows, choice->height, side, weft_scattered_number(1, number));
 }
 
-/* Place in the dataset of texel (i, j) of the excerpt. */
+/* Place in the dataset of texel (i, j) of the subset. */
 static void place_of_texel(const texel_choice *choice, int i, int j, int *x, int *y)
 {
     *x = choice->first_x + i * choice->stride;
     *y = choice->first_y + j * choice->stride;
-    if (choice->kind == WEFT_EXCERPT_SCATTERED)
+    if (choice->kind == WEFT_TEXEL_SUBSET_SCATTERED)
         weft_scattered_texel(choice->columns, choice->rows, choice->width, choice->height, i, j, x, y);
     if (choice->square_side > 0)
         place_of_square(choice, i, j, x, y);
@@ -64,14 +64,14 @@ static void place_of_texel(const texel_choice *choice, int i, int j, int *x, int
 
 static int neighbours_of(const texel_choice *choice)
 {
-    if (choice->kind == WEFT_EXCERPT_BLOCK)
+    if (choice->kind == WEFT_TEXEL_SUBSET_BLOCK)
         return weft_larger(choice->columns, choice->rows);
     return weft_larger(choice->square_side, 1);
 }
 
 /* ---- Layouts ---- */
 
-/* From the centre of the dataset to that of the excerpt, mm. */
+/* From the centre of the dataset to that of the subset, mm. */
 static weft_vec3 offset_of(const texel_choice *choice, double pitch)
 {
     double x = choice->first_x + 0.5 - 0.5 * choice->width - (0.5 - 0.5 * choice->columns) * choice->stride;
@@ -79,8 +79,8 @@ static weft_vec3 offset_of(const texel_choice *choice, double pitch)
     return weft_vec3_of(pitch * x, pitch * y, 0);
 }
 
-weft_code weft_excerpt_make_layout(const weft_dataset_layout *source, int columns, int rows, int stride,
-                                   weft_vec3 offset, weft_dataset_layout *layout, weft_error *error)
+weft_code weft_texel_subset_make_layout(const weft_dataset_layout *source, int columns, int rows, int stride,
+                                        weft_vec3 offset, weft_dataset_layout *layout, weft_error *error)
 {
     *layout = (weft_dataset_layout){.width = columns,
                                     .height = rows,
@@ -110,28 +110,28 @@ static weft_code make_layout(const weft_dataset_layout *source, const texel_choi
 {
     bool is_near = source->distance == WEFT_NEAR;
     weft_vec3 offset = is_near ? offset_of(choice, source->texel_pitch_mm) : weft_vec3_of(0, 0, 0);
-    return weft_excerpt_make_layout(source, choice->columns, choice->rows, choice->stride, offset, layout, error);
+    return weft_texel_subset_make_layout(source, choice->columns, choice->rows, choice->stride, offset, layout, error);
 }
 
 /* ---- Reading ---- */
 
-static weft_code read_samples(weft_dataset *dataset, const texel_choice *choice, weft_excerpt *excerpt,
+static weft_code read_samples(weft_dataset *dataset, const texel_choice *choice, weft_texel_subset *subset,
                               weft_error *error)
 {
-    size_t images = (size_t)excerpt->layout.image_count;
+    size_t images = (size_t)subset->layout.image_count;
     size_t texels = (size_t)choice->columns * (size_t)choice->rows;
-    excerpt->samples = malloc(3 * texels * images * sizeof *excerpt->samples);
-    excerpt->mask = malloc(texels * images);
-    if (!excerpt->samples || !excerpt->mask)
+    subset->samples = malloc(3 * texels * images * sizeof *subset->samples);
+    subset->mask = malloc(texels * images);
+    if (!subset->samples || !subset->mask)
         return weft_fail_memory(error, "samples", 7 * texels * images);
-    if (choice->kind == WEFT_EXCERPT_BLOCK)
+    if (choice->kind == WEFT_TEXEL_SUBSET_BLOCK)
         return weft_dataset_read_block(dataset, choice->first_x, choice->first_y, choice->columns, choice->rows,
-                                       excerpt->samples, excerpt->mask, error);
+                                       subset->samples, subset->mask, error);
     for (size_t texel = 0; texel < texels; texel++) {
         int x, y;
         place_of_texel(choice, (int)(texel % (size_t)choice->columns), (int)(texel / (size_t)choice->columns), &x, &y);
-        WEFT_TRY(weft_dataset_read_block(dataset, x, y, 1, 1, excerpt->samples + 3 * texel * images,
-                                         excerpt->mask + texel * images, error));
+        WEFT_TRY(weft_dataset_read_block(dataset, x, y, 1, 1, subset->samples + 3 * texel * images,
+                                         subset->mask + texel * images, error));
     }
     return WEFT_OK;
 }
@@ -162,52 +162,52 @@ static weft_code read_numbers(weft_dataset *dataset, const texel_choice *choice,
     return code;
 }
 
-weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_excerpt *excerpt,
-                            weft_error *error)
+weft_code weft_texel_subset_read(weft_dataset *dataset, weft_texel_subset_kind kind, int side,
+                                 weft_texel_subset *subset, weft_error *error)
 {
     const weft_dataset_layout *source = weft_dataset_get_layout(dataset);
     texel_choice choice = choose_texels(source, kind, side);
-    *excerpt = (weft_excerpt){.window = {choice.first_x, choice.first_y, source->width, source->height},
-                              .neighbours = neighbours_of(&choice)};
-    weft_dataset_size_mm(source, excerpt->whole_mm);
-    weft_code code = make_layout(source, &choice, &excerpt->layout, error);
+    *subset = (weft_texel_subset){.window = {choice.first_x, choice.first_y, source->width, source->height},
+                                  .neighbours = neighbours_of(&choice)};
+    weft_dataset_size_mm(source, subset->whole_mm);
+    weft_code code = make_layout(source, &choice, &subset->layout, error);
     if (code == WEFT_OK)
-        code = read_samples(dataset, &choice, excerpt, error);
+        code = read_samples(dataset, &choice, subset, error);
     if (code == WEFT_OK && weft_dataset_has_opacity(dataset))
-        code = read_numbers(dataset, &choice, weft_dataset_read_opacity, (size_t)source->view_count, &excerpt->opacity,
+        code = read_numbers(dataset, &choice, weft_dataset_read_opacity, (size_t)source->view_count, &subset->opacity,
                             error);
     if (code == WEFT_OK && weft_dataset_has_frames(dataset))
-        code = read_numbers(dataset, &choice, weft_dataset_read_frames, 6, &excerpt->frames, error);
-    if (code == WEFT_OK && kind == WEFT_EXCERPT_BLOCK)
-        code = weft_dataset_read_surface(dataset, &excerpt->surface, error);
+        code = read_numbers(dataset, &choice, weft_dataset_read_frames, 6, &subset->frames, error);
+    if (code == WEFT_OK && kind == WEFT_TEXEL_SUBSET_BLOCK)
+        code = weft_dataset_read_surface(dataset, &subset->surface, error);
     if (code != WEFT_OK)
-        weft_excerpt_free(excerpt);
+        weft_texel_subset_free(subset);
     return code;
 }
 
-void weft_excerpt_free(weft_excerpt *excerpt)
+void weft_texel_subset_free(weft_texel_subset *subset)
 {
-    weft_dataset_layout_free(&excerpt->layout);
-    free(excerpt->samples);
-    free(excerpt->mask);
-    free(excerpt->opacity);
-    free(excerpt->frames);
-    weft_dataset_heights_free(&excerpt->surface);
-    *excerpt = (weft_excerpt){0};
+    weft_dataset_layout_free(&subset->layout);
+    free(subset->samples);
+    free(subset->mask);
+    free(subset->opacity);
+    free(subset->frames);
+    weft_dataset_heights_free(&subset->surface);
+    *subset = (weft_texel_subset){0};
 }
 
 /* ---- A part ---- */
 
-weft_texel_block weft_excerpt_middle(const weft_excerpt *excerpt, int side)
+weft_texel_block weft_texel_subset_middle(const weft_texel_subset *subset, int side)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     int width = weft_smaller(side, layout->width), height = weft_smaller(side, layout->height);
     return (weft_texel_block){(layout->width - width) / 2, (layout->height - height) / 2, width, height};
 }
 
 /* Of `each` bytes a texel; NULL of NULL. */
-static weft_code crop_array(const weft_excerpt *excerpt, const weft_texel_block *block, size_t each, const void *whole,
-                            void **result, weft_error *error)
+static weft_code crop_array(const weft_texel_subset *subset, const weft_texel_block *block, size_t each,
+                            const void *whole, void **result, weft_error *error)
 {
     size_t row = (size_t)block->width * each, bytes = row * (size_t)block->height;
     if (!whole)
@@ -216,31 +216,31 @@ static weft_code crop_array(const weft_excerpt *excerpt, const weft_texel_block 
     if (!*result)
         return weft_fail_memory(error, "texels", bytes);
     for (int y = 0; y < block->height; y++) {
-        size_t first = (size_t)(block->y + y) * (size_t)excerpt->layout.width + (size_t)block->x;
+        size_t first = (size_t)(block->y + y) * (size_t)subset->layout.width + (size_t)block->x;
         memcpy((char *)*result + (size_t)y * row, (const char *)whole + first * each, row);
     }
     return WEFT_OK;
 }
 
-static weft_code crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+static weft_code crop(const weft_texel_subset *subset, const weft_texel_block *block, weft_texel_subset *result,
                       weft_error *error)
 {
-    size_t images = (size_t)excerpt->layout.image_count, views = (size_t)excerpt->layout.view_count;
-    const texel_choice choice = {.width = excerpt->layout.width,
-                                 .height = excerpt->layout.height,
+    size_t images = (size_t)subset->layout.image_count, views = (size_t)subset->layout.view_count;
+    const texel_choice choice = {.width = subset->layout.width,
+                                 .height = subset->layout.height,
                                  .columns = block->width,
                                  .rows = block->height,
                                  .stride = 1};
     void *samples = NULL, *mask = NULL, *opacity = NULL, *frames = NULL;
-    weft_code code = make_layout(&excerpt->layout, &choice, &result->layout, error);
+    weft_code code = make_layout(&subset->layout, &choice, &result->layout, error);
     if (code == WEFT_OK)
-        code = crop_array(excerpt, block, 3 * images * sizeof(weft_half), excerpt->samples, &samples, error);
+        code = crop_array(subset, block, 3 * images * sizeof(weft_half), subset->samples, &samples, error);
     if (code == WEFT_OK)
-        code = crop_array(excerpt, block, images, excerpt->mask, &mask, error);
+        code = crop_array(subset, block, images, subset->mask, &mask, error);
     if (code == WEFT_OK)
-        code = crop_array(excerpt, block, views * sizeof(float), excerpt->opacity, &opacity, error);
+        code = crop_array(subset, block, views * sizeof(float), subset->opacity, &opacity, error);
     if (code == WEFT_OK)
-        code = crop_array(excerpt, block, 6 * sizeof(float), excerpt->frames, &frames, error);
+        code = crop_array(subset, block, 6 * sizeof(float), subset->frames, &frames, error);
     result->samples = samples;
     result->mask = mask;
     result->opacity = opacity;
@@ -248,40 +248,40 @@ static weft_code crop(const weft_excerpt *excerpt, const weft_texel_block *block
     return code;
 }
 
-weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
-                            weft_error *error)
+weft_code weft_texel_subset_crop(const weft_texel_subset *subset, const weft_texel_block *block,
+                                 weft_texel_subset *result, weft_error *error)
 {
-    *result = (weft_excerpt){.window = excerpt->window, .neighbours = excerpt->neighbours};
+    *result = (weft_texel_subset){.window = subset->window, .neighbours = subset->neighbours};
     result->window.x += block->x;
     result->window.y += block->y;
-    weft_code code = crop(excerpt, block, result, error);
+    weft_code code = crop(subset, block, result, error);
     if (code != WEFT_OK)
-        weft_excerpt_free(result);
+        weft_texel_subset_free(result);
     return code;
 }
 
 /* ---- The surface ---- */
 
-bool weft_excerpt_is_masked(const weft_excerpt *excerpt)
+bool weft_texel_subset_is_masked(const weft_texel_subset *subset)
 {
-    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_dataset_layout *layout = &subset->layout;
     size_t count = (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count, masked = 0;
-    while (masked < count && excerpt->mask[masked])
+    while (masked < count && subset->mask[masked])
         masked++;
     return masked == count;
 }
 
-bool weft_excerpt_has_surface(const weft_excerpt *excerpt)
+bool weft_texel_subset_has_surface(const weft_texel_subset *subset)
 {
-    return excerpt->surface.value != NULL;
+    return subset->surface.value != NULL;
 }
 
-weft_code weft_excerpt_give_heights(const weft_excerpt *excerpt, weft_material *material, weft_error *error)
+weft_code weft_texel_subset_give_heights(const weft_texel_subset *subset, weft_material *material, weft_error *error)
 {
-    const weft_dataset_heights *surface = &excerpt->surface;
+    const weft_dataset_heights *surface = &subset->surface;
     weft_material_heights *heights;
     WEFT_TRY(weft_material_heights_create(surface->value, surface->width, surface->height, surface->level_count,
-                                          excerpt->whole_mm, &heights, error));
+                                          subset->whole_mm, &heights, error));
     weft_material_take_heights(material, heights);
     return WEFT_OK;
 }
