@@ -125,6 +125,8 @@ weft_module(compare/truth
 weft_module(compare/report
     FOLDERS compare/report compare/report/page
     USES base base/picture base/text btf/dataset btf/direction btf/material compare/pictures compare/truth compress compress/weave_fit evaluate geometry player/draw reflectance)
+weft_module(compare/rti
+    USES base)
 weft_module(compare/error_budget
     USES base base/text btf/dataset btf/material capture capture/virtual compress evaluate geometry registration)
 weft_module(compare/tradeoff

@@ -52,6 +52,9 @@ else
     "$build/bench/bench_player" "$weave" 4
 fi
 
+heading "One view under many lamps: RTI's models and Weft"
+"$build/bench/bench_rti"
+
 heading "Registration against the ground truth of the virtual rig"
 if [ -e "$demo.truth.h5" ] && [ -e "$demo.btf.h5" ]; then
     "$build/bench/bench_truth" "$demo" "$demo.btf.h5" "$demo.truth.h5"
