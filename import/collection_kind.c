@@ -49,8 +49,8 @@ static weft_code say_none_is_present(const weft_collection *collection, const ch
     if (collection->count > 0)
         return weft_fail(
             error, WEFT_BAD_INPUT,
-            "'%s' holds none of the %d listed photographs, such as '%s'; the formats read are JPEG, PNG, TIFF, BMP, "
-            "EXR, HDR and camera raw",
+            "'%s' holds none of the %d listed photographs, such as '%s'; the formats read are JPEG, HEIF, PNG, "
+            "TIFF, BMP, EXR, HDR and camera raw",
             folder, collection->count, collection->photograph[0].name);
     return weft_fail(error, WEFT_BAD_INPUT,
                      "'%s' holds no photograph with known directions: no position files, no directions.csv, no .lp "

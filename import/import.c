@@ -1,6 +1,5 @@
 #include "weft/import.h"
 
-#include "base/picture/image.h"
 #include "base/progress.h"
 #include "btf/file_kind.h"
 #include "import/readers.h"
@@ -20,23 +19,22 @@ void weft_import_report_free(weft_import_report *report)
     weft_lines_free(&report->notes);
 }
 
-/* The size that all photographs must have: that of the first one that can be read. */
-static weft_code probe_size(const weft_collection *collection, const char *folder, bool skip_bad,
-                            weft_decoding *decoding, weft_error *error)
+/* The first photograph that can be read is kept: all must have its size. */
+static weft_code read_first(weft_import_run *run, weft_error *error)
 {
+    const weft_collection *collection = run->collection;
     weft_code code = WEFT_OK;
-    for (int i = 0; i < collection->count && decoding->source_width == 0; i++) {
+    for (int i = 0; i < collection->count && run->decoding.source_width == 0; i++) {
         if (collection->photograph[i].missing)
             continue;
-        char *path = weft_join_path(folder, collection->photograph[i].name);
-        weft_image image;
-        code = path ? weft_image_read_shown(path, &image, NULL, error) : weft_fail_memory(error, "path", 0);
+        char *path = weft_join_path(run->source, collection->photograph[i].name);
+        code = path ? weft_shown_photograph_read(path, &run->first, error) : weft_fail_memory(error, "path", 0);
         free(path);
         if (code == WEFT_OK) {
-            decoding->source_width = image.width;
-            decoding->source_height = image.height;
-            weft_image_free(&image);
-        } else if (!skip_bad) {
+            run->decoding.source_width = run->first.image.width;
+            run->decoding.source_height = run->first.image.height;
+            run->first_index = i;
+        } else if (!run->options->skip_bad) {
             return code;
         }
     }
@@ -66,13 +64,26 @@ static weft_code note_scale(weft_import_report *report, weft_error *error)
                           report->mean);
 }
 
+static weft_code note_partial(weft_import_run *run, weft_error *error)
+{
+    if (run->partial == 0)
+        return WEFT_OK;
+    return weft_lines_add(&run->report->notes, error,
+                          "%d photograph%s, such as '%s', do%s not hold all pixels that they show: %.3g %% of all "
+                          "samples are masked as missing",
+                          run->partial, run->partial == 1 ? "" : "s",
+                          run->collection->photograph[run->first_partial].name, run->partial == 1 ? "es" : "",
+                          100 * (double)run->lacking / (double)run->samples);
+}
+
 static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_error *error)
 {
     weft_import_report *report = run->report;
     report->saturated_fraction = (double)run->saturated / (double)run->samples;
     report->outside_fraction = (double)run->outside / (double)run->samples;
-    report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated)));
+    report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated - run->lacking)));
     WEFT_TRY(note_scale(report, error));
+    WEFT_TRY(note_partial(run, error));
     WEFT_TRY(weft_colour_messages_note(&run->messages, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, bonn, run->options, &run->decoding, report);
     if (!provenance)
@@ -119,10 +130,16 @@ static weft_code choose_size(weft_import_run *run, const weft_bonn_file *bonn, w
         decoding->source_width = bonn->width;
         decoding->source_height = bonn->height;
     } else {
-        WEFT_TRY(probe_size(run->collection, run->source, run->options->skip_bad, decoding, error));
+        WEFT_TRY(read_first(run, error));
     }
-    return weft_reduced_size(decoding->source_width, decoding->source_height, run->options->width, &decoding->width,
-                             &decoding->height, error);
+    WEFT_TRY(weft_reduced_size(decoding->source_width, decoding->source_height, run->options->width, &decoding->width,
+                               &decoding->height, error));
+    double rows = decoding->source_height - (double)decoding->height * decoding->source_width / decoding->width;
+    return rows < 1e-9 ? WEFT_OK
+                       : weft_lines_add(&run->report->notes, error,
+                                        "%d x %d texels: of the %d rows of pixels %.2f are left out above, and as many "
+                                        "below, because texels are square",
+                                        decoding->width, decoding->height, decoding->source_height, rows / 2);
 }
 
 static weft_code import_collection(weft_import_run *run, const weft_bonn_file *bonn, const char *output,
@@ -171,6 +188,7 @@ weft_code weft_import(const char *source, const char *output, const weft_import_
     report->notes = collection.notes;
     collection.notes = (weft_lines){0};
     weft_code code = import_collection(&run, bonn, output, error);
+    weft_image_free(&run.first.image);
     weft_collection_free(&collection);
     weft_bonn_file_close(&file);
     if (code != WEFT_OK)

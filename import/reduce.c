@@ -12,11 +12,11 @@ weft_code weft_reduced_size(int source_width, int source_height, int asked, int 
     if (*width < 1 || *width > source_width)
         return weft_fail(error, WEFT_BAD_USAGE, "%d texels asked for, but the photographs are %d pixels wide", *width,
                          source_width);
-    if ((long)source_height * *width % source_width != 0)
+    *height = (int)((long)source_height * *width / source_width);
+    if (*height < 1)
         return weft_fail(error, WEFT_BAD_USAGE,
                          "photographs of %d x %d pixels cannot become %d texels wide: that is %g high", source_width,
                          source_height, *width, (double)source_height * *width / source_width);
-    *height = (int)((long)source_height * *width / source_width);
     return WEFT_OK;
 }
 
@@ -45,14 +45,13 @@ typedef struct span {
     double first_weight, last_weight;
 } span;
 
-static span span_of(int index, int source_count, int result_count)
+/* From `begin` to `end`, whole numbers of which `unit` are a pixel, so that equal ratios give exactly whole spans. */
+static span span_of(long begin, long end, long unit)
 {
-    /* Bounds as whole numbers over result_count, so that equal ratios give exactly whole spans. */
-    long begin = (long)index * source_count, end = begin + source_count;
-    int first = (int)(begin / result_count), last = (int)((end - 1) / result_count);
-    double first_end = fmin((double)end, (double)(first + 1) * result_count);
-    double last_begin = fmax((double)begin, (double)last * result_count);
-    return (span){first, last, (first_end - (double)begin) / result_count, ((double)end - last_begin) / result_count};
+    int first = (int)(begin / unit), last = (int)((end - 1) / unit);
+    double first_end = fmin((double)end, (double)(first + 1) * (double)unit);
+    double last_begin = fmax((double)begin, (double)last * (double)unit);
+    return (span){first, last, (first_end - (double)begin) / (double)unit, ((double)end - last_begin) / (double)unit};
 }
 
 static double weight_in(const span *s, int index)
@@ -98,8 +97,11 @@ static void copy(const weft_image *image, const uint8_t *flagged, weft_half *sam
 static void reduce(const weft_image *image, const uint8_t *flagged, int width, int height, const span *sx,
                    weft_half *samples, uint8_t *touched)
 {
+    /* Texels are square, and what is too high for whole ones is cut off above and below. */
+    const long unit = 2L * width, side = 2L * image->width;
+    const long above = (long)image->height * width - (long)height * image->width;
     for (int y = 0; y < height; y++) {
-        span sy = span_of(y, image->height, height);
+        span sy = span_of(above + y * side, above + (y + 1) * side, unit);
         for (int x = 0; x < width; x++) {
             size_t at = (size_t)y * (size_t)width + (size_t)x;
             average(image, &sx[x], &sy, samples + 3 * at);
@@ -120,7 +122,7 @@ weft_code weft_reduce(const weft_image *image, const uint8_t *flagged, int width
     if (!sx)
         return weft_fail_memory(error, "spans", (size_t)width * sizeof *sx);
     for (int x = 0; x < width; x++)
-        sx[x] = span_of(x, image->width, width);
+        sx[x] = span_of((long)x * image->width, (x + 1L) * image->width, width);
     reduce(image, flagged, width, height, sx, samples, touched);
     free(sx);
     return WEFT_OK;

@@ -34,6 +34,9 @@ static void count_image(weft_import_run *run, int index, weft_code code, const w
         weft_colour_messages_add(&run->messages, index, photograph->name, decoded);
         run->saturated += decoded->saturated;
         run->outside += decoded->outside;
+        run->lacking += decoded->missing;
+        if (decoded->missing > 0 && (run->partial++ == 0 || index < run->first_partial))
+            run->first_partial = index;
         run->sum += decoded->sum;
         run->samples += (size_t)run->decoding.width * (size_t)run->decoding.height;
     }
@@ -56,20 +59,35 @@ void weft_import_count(weft_import_run *run, int index, weft_code code, const we
         count_image(run, index, code, error, decoded);
 }
 
-static weft_code put_photograph(const weft_import_run *run, int index, weft_decoded *decoded, weft_error *error)
+/* The first photograph has been read already. */
+static weft_code take_photograph(weft_import_run *run, int index, const char *path, weft_shown_photograph *shown,
+                                 weft_error *error)
+{
+    if (index != run->first_index || !run->first.image.pixels)
+        return weft_shown_photograph_read(path, shown, error);
+    *shown = run->first;
+    run->first.image.pixels = NULL;
+    return WEFT_OK;
+}
+
+static weft_code put_photograph(weft_import_run *run, int index, weft_decoded *decoded, weft_error *error)
 {
     const weft_photograph *photograph = &run->collection->photograph[index];
     size_t texels = (size_t)run->decoding.width * (size_t)run->decoding.height;
     weft_half *samples = malloc(3 * texels * sizeof *samples);
     uint8_t *mask = malloc(texels);
     char *path = weft_join_path(run->source, photograph->name);
+    weft_shown_photograph shown = {.image = {0}};
     weft_code code = WEFT_OK;
     if (!samples || !mask || !path)
         code = weft_fail_memory(error, "photograph", 3 * texels * sizeof *samples);
     if (code == WEFT_OK)
-        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, decoded, error);
+        code = take_photograph(run, index, path, &shown, error);
+    if (code == WEFT_OK)
+        code = weft_photograph_decode(&run->decoding, path, photograph, &shown, samples, mask, decoded, error);
     if (code == WEFT_OK)
         code = weft_dataset_writer_put_image(run->writer, index, samples, mask, error);
+    weft_image_free(&shown.image);
     free(samples);
     free(mask);
     free(path);

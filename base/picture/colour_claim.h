@@ -21,10 +21,14 @@ typedef struct weft_colour_claim {
     weft_colour_space space;
 } weft_colour_claim;
 
-/* An ICC profile counts before a gamma. Floats are linear, whatever curve or gamma is named. Pure. */
+/* What is said counts in the order of PNG (3rd edition): code points of ITU-T H.273 (cICP), an ICC profile, an sRGB
+ * chunk, chromaticities and gamma; then Exif that says another space. Floats are linear, whatever curve or gamma is
+ * named. Pure. */
 void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim);
 
-/* Of the file of a picture. Errors: as of weft_colour_tags_read, and WEFT_BAD_INPUT for CIE L*a*b*. Thread-safe. */
-weft_code weft_colour_claim_read(const char *path, weft_colour_claim *claim, weft_error *error);
+/* Reads a picture with what follows from its tags, in one go; `image`, `kind` and `exif` may be NULL, as for
+ * weft_picture_read. Errors: as of that, and WEFT_BAD_INPUT for CIE L*a*b*. Thread-safe. */
+weft_code weft_colour_claim_read(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
+                                 weft_colour_claim *claim, weft_error *error);
 
 #endif

@@ -2,11 +2,10 @@
 #ifndef WEFT_BASE_PICTURE_COLOUR_TAGS_H
 #define WEFT_BASE_PICTURE_COLOUR_TAGS_H
 
-#include "base/status.h"
+#include "base/picture/exif.h"
+#include "base/picture/image.h"
 
-#include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,8 +14,11 @@ extern "C" {
 typedef struct weft_colour_tags {
     uint8_t *profile; /* ICC; NULL: none */
     size_t profile_size;
+    bool has_cicp;   /* of PNG; of HEIF that has no profile */
+    uint8_t cicp[4]; /* ITU-T H.273: primaries, transfer, matrix; whether the range is full */
+    bool says_srgb;  /* PNG: a chunk sRGB */
     bool has_primaries;
-    double primaries[8];   /* of EXR: x, y of red, green, blue and white */
+    double primaries[8];   /* of EXR and PNG: x, y of red, green, blue and white */
     double gamma;          /* of PNG: the power that decodes; 0: not said */
     bool is_uncalibrated;  /* Exif: not sRGB; cameras say so of Adobe RGB */
     bool is_grey;          /* one channel */
@@ -26,9 +28,12 @@ typedef struct weft_colour_tags {
     char model[16];        /* of what is neither RGB nor grey: "CMYK", "CIELAB" */
 } weft_colour_tags;
 
-/* Reads the head of an image file. The caller frees with weft_colour_tags_free. Errors: WEFT_BAD_INPUT naming a file
- * that is no image; WEFT_SYSTEM. Thread-safe. */
-weft_code weft_colour_tags_read(const char *path, weft_colour_tags *tags, weft_error *error);
+/* Reads a picture and what its file says, in one go: some formats take seconds to open. Any but `path` may be NULL;
+ * without `image` the pixels are not read. `image` and `kind` are as of weft_image_read; the caller frees the tags with
+ * weft_colour_tags_free. Errors: as of weft_image_read. Thread-safe. */
+weft_code weft_picture_read(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
+                            weft_colour_tags *tags, weft_error *error);
+
 void weft_colour_tags_free(weft_colour_tags *tags);
 
 #ifdef __cplusplus

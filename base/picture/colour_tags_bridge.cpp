@@ -1,5 +1,3 @@
-#include "base/picture/colour_tags.h"
-#include "base/picture/image_library.h"
 #include "base/picture/open_bridge.h"
 
 #include <OpenImageIO/imageio.h>
@@ -7,7 +5,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 
 namespace
 {
@@ -15,7 +12,7 @@ namespace
 weft_code copy_profile(const OIIO::ImageSpec &spec, const char *path, weft_colour_tags *tags, weft_error *error)
 {
     const OIIO::ParamValue *found = spec.find_attribute("ICCProfile");
-    if (!found || found->type().basetype != OIIO::TypeDesc::UINT8 || found->type().size() == 0)
+    if (tags->profile || !found || found->type().basetype != OIIO::TypeDesc::UINT8 || found->type().size() == 0)
         return WEFT_OK;
     tags->profile_size = found->type().size();
     tags->profile = static_cast<uint8_t *>(malloc(tags->profile_size));
@@ -28,7 +25,7 @@ weft_code copy_profile(const OIIO::ImageSpec &spec, const char *path, weft_colou
 void copy_primaries(const OIIO::ImageSpec &spec, weft_colour_tags *tags)
 {
     const OIIO::ParamValue *found = spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
-    tags->has_primaries = found != nullptr;
+    tags->has_primaries = tags->has_primaries || found;
     for (int i = 0; found && i < 8; i++)
         tags->primaries[i] = double(found->get_float_indexed(i));
 }
@@ -43,34 +40,20 @@ void copy_model(const OIIO::ImageSpec &spec, weft_colour_tags *tags)
     }
 }
 
-weft_code read_tags(const char *path, weft_colour_tags *tags, weft_error *error)
+} // namespace
+
+weft_code weft_colour_tags_of(OIIO::ImageInput &input, const char *path, weft_colour_tags *tags, weft_error *error)
 {
     constexpr int uncalibrated = 65535;
-    weft_code code;
-    auto input = weft_image_open(path, nullptr, &code, error);
-    WEFT_TRY(code);
-    const OIIO::ImageSpec &spec = input->spec();
+    const OIIO::ImageSpec &spec = input.spec();
     tags->is_float = spec.format.is_floating_point();
-    tags->is_raw = strcmp(input->format_name(), "raw") == 0;
+    tags->is_raw = strcmp(input.format_name(), "raw") == 0;
     tags->is_grey = spec.nchannels < 3;
     tags->is_uncalibrated = spec.get_int_attribute("Exif:ColorSpace", 0) == uncalibrated;
-    tags->gamma = double(spec.get_float_attribute("oiio:Gamma", 0));
     tags->bits = int(8 * spec.format.size());
     copy_primaries(spec, tags);
     copy_model(spec, tags);
     WEFT_TRY(copy_profile(spec, path, tags, error));
-    tags->has_more = input->seek_subimage(1, 0); /* the head is that of the second then */
+    tags->has_more = input.seek_subimage(1, 0); /* the head is that of the second then */
     return WEFT_OK;
-}
-
-} // namespace
-
-weft_code weft_colour_tags_bridge_read(const char *path, weft_colour_tags *tags, weft_error *error)
-{
-    *tags = {};
-    try {
-        return read_tags(path, tags, error);
-    } catch (const std::exception &failure) {
-        return weft_image_unreadable(error, path, failure.what());
-    }
 }

@@ -1,4 +1,3 @@
-#include "base/picture/image_library.h"
 #include "base/picture/open_bridge.h"
 #include "base/picture/tiff_sensitivity.h"
 
@@ -6,7 +5,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <initializer_list>
 
 namespace
@@ -26,37 +24,24 @@ double number_of(const OIIO::ImageSpec &spec, std::initializer_list<const char *
     return 0;
 }
 
-weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
+} // namespace
+
+void weft_exif_of(OIIO::ImageInput &input, const char *path, weft_exif *exif)
 {
-    weft_code code;
-    auto input = weft_image_open(path, nullptr, &code, error);
-    WEFT_TRY(code);
-    const OIIO::ImageSpec &spec = input->spec();
+    const OIIO::ImageSpec &spec = input.spec();
     *exif = {};
     exif->width = spec.width;
     exif->height = spec.height;
     exif->is_float = spec.format.is_floating_point();
-    exif->is_linear = exif->is_float || strcmp(input->format_name(), "raw") == 0;
+    exif->is_linear = exif->is_float || strcmp(input.format_name(), "raw") == 0;
     exif->bits = spec.get_int_attribute("oiio:BitsPerSample", (int)(8 * spec.format.size()));
     exif->orientation = spec.get_int_attribute("Orientation", 1);
     exif->exposure_s = number_of(spec, {"ExposureTime"});
     exif->f_number = number_of(spec, {"FNumber"});
     exif->iso = number_of(
         spec, {"Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings", "Exif:ISOSpeed", "ISOSpeed", "raw:iso_speed"});
-    if (exif->iso <= 0 && strcmp(input->format_name(), "tiff") == 0)
+    if (exif->iso <= 0 && strcmp(input.format_name(), "tiff") == 0)
         exif->iso = weft_tiff_sensitivity(path);
     exif->focal_length_mm = number_of(spec, {"Exif:FocalLength"});
     exif->focal_length_35mm = number_of(spec, {"Exif:FocalLengthIn35mmFilm"});
-    return WEFT_OK;
-}
-
-} // namespace
-
-weft_code weft_exif_bridge_read(const char *path, weft_exif *exif, weft_error *error)
-{
-    try {
-        return read_head(path, exif, error);
-    } catch (const std::exception &failure) {
-        return weft_image_unreadable(error, path, failure.what());
-    }
 }

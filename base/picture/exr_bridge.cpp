@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 
 namespace
@@ -65,17 +66,22 @@ weft_code weft_exr_colour_channels(const OIIO::ImageSpec &spec, const char *path
                                    names_of(spec).c_str());
 }
 
-weft_code weft_exr_show_window(const OIIO::ImageSpec &spec, weft_image *image, weft_error *error)
+weft_code weft_exr_show_window(const OIIO::ImageSpec &spec, const char *path, weft_image *image, weft_error *error)
 {
     /* Both lie anywhere within 31 bits. */
     long long left = (long long)spec.x - spec.full_x, top = (long long)spec.y - spec.full_y;
     if (left == 0 && top == 0 && spec.full_width == spec.width && spec.full_height == spec.height)
         return WEFT_OK;
+    long long begin = std::max(0ll, left), end = std::min<long long>(spec.full_width, left + spec.width);
+    long long first = std::max(0ll, top), last = std::min<long long>(spec.full_height, top + spec.height);
+    if (begin >= end || first >= last)
+        return weft_fail(error, WEFT_DAMAGED, "image '%s' holds no pixel of what it shows: its windows do not overlap",
+                         path);
     weft_image shown;
     WEFT_TRY(weft_image_create(spec.full_width, spec.full_height, &shown, error));
-    long long begin = std::max(0ll, left), end = std::min<long long>(spec.full_width, left + spec.width);
-    long long last = std::min<long long>(spec.full_height, top + spec.height);
-    for (long long y = std::max(0ll, top); begin < end && y < last; y++)
+    shown.is_partial = begin > 0 || end < spec.full_width || first > 0 || last < spec.full_height;
+    std::fill_n(shown.pixels, 3 * size_t(shown.width) * size_t(shown.height), std::numeric_limits<float>::quiet_NaN());
+    for (long long y = first; y < last; y++)
         memcpy(shown.pixels + 3 * (size_t(y) * size_t(shown.width) + size_t(begin)),
                image->pixels + 3 * (size_t(y - top) * size_t(image->width) + size_t(begin - left)),
                3 * size_t(end - begin) * sizeof(float));

@@ -7,7 +7,7 @@
 weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error)
 {
     size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(float);
-    *image = (weft_image){width, height, calloc(1, bytes)};
+    *image = (weft_image){.width = width, .height = height, .pixels = calloc(1, bytes)};
     return image->pixels ? WEFT_OK : weft_fail_memory(error, "image", bytes);
 }
 
@@ -43,6 +43,7 @@ weft_code weft_image_turn(weft_image *image, int orientation, weft_error *error)
         for (int x = 0; x < shown.width; x++, pixel += 3)
             memcpy(pixel, image->pixels + stored_at(image, orientation, x, y), 3 * sizeof *pixel);
     }
+    shown.is_partial = image->is_partial;
     weft_image_free(image);
     *image = shown;
     return WEFT_OK;

@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -16,6 +17,7 @@ extern "C" {
 typedef struct weft_image {
     int width, height;
     float *pixels;
+    bool is_partial; /* the file does not hold all that it shows: pixels that it lacks are NaN */
 } weft_image;
 
 typedef enum weft_image_kind {
@@ -30,16 +32,14 @@ void weft_image_free(weft_image *image);
 /* Reads any format OpenImageIO knows; one channel is repeated. Alpha is dropped and darkens nothing. Camera raw comes
  * as the sensor counted, from black to white level: linear, without white balance, its colour filters interpolated.
  * Of EXR the display window and the channels R, G, B of no layer, or of the only layer. `kind` may be NULL. Errors:
- * WEFT_BAD_INPUT for a missing, truncated or unreadable file, one over 2^28 pixels, or an EXR without such channels.
- * Thread-safe. */
+ * WEFT_BAD_INPUT for a missing, truncated, damaged or unreadable file, camera raw without the values of its sensor, a
+ * picture over 2^28 pixels or of more than its bytes can hold, or an EXR without such channels. Thread-safe. */
 weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
 
-/* The same, turned as a viewer shows it: by the Exif orientation of the file. For pictures whose directions were noted
- * by people who looked at them. Where a lens is looked for, the pixels must stay as the sensor read them. */
-weft_code weft_image_read_shown(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
-
 /* Turns a picture as Exif says that it is shown: 1 leaves it, 2 to 8 mirror and turn it, and 5 to 8 exchange width and
- * height. Any other number leaves it. Errors: WEFT_SYSTEM for memory; then the picture is as it was. */
+ * height. Any other number leaves it. For pictures whose directions were noted by people who looked at them. Where a
+ * lens is looked for, the pixels must stay as the sensor read them. Errors: WEFT_SYSTEM for memory; then the picture is
+ * as it was. */
 weft_code weft_image_turn(weft_image *image, int orientation, weft_error *error);
 
 /* Writes atomically; the format follows the extension: .png 8 bit (values clamped to 0..1),

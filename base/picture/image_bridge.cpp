@@ -20,32 +20,56 @@ constexpr long long max_pixels = 1ll << 28;
 constexpr const char *settings_name = "weft:settings";
 constexpr const char *no_time = "0000:00:00 00:00:00";
 
-/* Camera raw as the sensor counted: no curve, no white balance, no brightness of each picture's own. The shape of the
- * colour filters is interpolated all the same. */
-OIIO::ImageSpec input_hints()
+/* The tags of a container while a file is open. */
+class own_tags
 {
-    const float even[4] = {1, 1, 1, 1};
-    OIIO::ImageSpec hints;
-    /* Else what is half transparent comes half as bright. */
-    hints["oiio:UnassociatedAlpha"] = 1;
-    hints["raw:ColorSpace"] = "raw";
-    hints["raw:auto_bright"] = 0;
-    hints["raw:use_camera_wb"] = 0;
-    hints["raw:use_camera_matrix"] = 0;
-    hints["raw:adjust_maximum_thr"] = 0.0f;
-    hints.attribute("raw:user_mul", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 4), even);
-    return hints;
-}
+  public:
+    weft_colour_tags tags = {};
+    own_tags() = default;
+    own_tags(const own_tags &) = delete;
+    own_tags &operator=(const own_tags &) = delete;
+    ~own_tags()
+    {
+        free(tags.profile);
+    }
+};
 
 std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
 {
-    const OIIO::ImageSpec hints = input_hints();
-    return weft_image_open(path, &hints, code, error);
+    own_tags own;
+    return weft_image_open(path, &own.tags, code, error);
+}
+
+bool is_raw(const OIIO::ImageInput &input)
+{
+    return strcmp(input.format_name(), "raw") == 0;
 }
 
 bool is_exr(const OIIO::ImageInput &input)
 {
     return strcmp(input.format_name(), "openexr") == 0;
+}
+
+/* OpenImageIO turns white that is 0 into black for 8 bits alone. */
+void turn_white_to_one(const OIIO::ImageSpec &spec, weft_image *image)
+{
+    constexpr int white_is_zero = 0;
+    size_t count = 3 * size_t(image->width) * size_t(image->height);
+    if (spec.get_int_attribute("tiff:PhotometricInterpretation", -1) != white_is_zero ||
+        spec.format == OIIO::TypeDesc::UINT8)
+        return;
+    for (size_t i = 0; i < count; i++)
+        image->pixels[i] = 1 - image->pixels[i];
+}
+
+/* What follows the reading of samples: how formats mean them, and whether they are all there. */
+weft_code finish_floats(OIIO::ImageInput &input, const char *path, weft_image *image, weft_error *error)
+{
+    WEFT_TRY(weft_image_check_read(input, path, error));
+    turn_white_to_one(input.spec(), image);
+    if (is_raw(input))
+        WEFT_TRY(weft_raw_check_light(image, path, error));
+    return is_exr(input) ? weft_exr_show_window(input.spec(), path, image, error) : WEFT_OK;
 }
 
 weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *image, weft_error *error)
@@ -57,12 +81,13 @@ weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *ima
     size_t pixel_count = size_t(spec.width) * size_t(spec.height);
     WEFT_TRY(weft_image_create(spec.width, spec.height, image, error));
     weft_code code = WEFT_OK;
+    input.geterror();
     if (!input.read_image(0, 0, first, first + channels, OIIO::TypeDesc::FLOAT, image->pixels, 3 * sizeof(float)))
         code = weft_image_unreadable(error, path, input.geterror());
     for (size_t i = 0; code == WEFT_OK && channels == 1 && i < pixel_count; i++)
         image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
-    if (code == WEFT_OK && is_exr(input))
-        code = weft_exr_show_window(spec, image, error);
+    if (code == WEFT_OK)
+        code = finish_floats(input, path, image, error);
     if (code != WEFT_OK)
         weft_image_free(image);
     return code;
@@ -73,22 +98,43 @@ bool is_usable(int width, int height)
     return width >= 1 && height >= 1 && (long long)width * height <= max_pixels;
 }
 
-weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+/* A header may claim what its file cannot hold: no format packs a photograph so tightly, and none a sensor's noise. */
+weft_code check_size(const OIIO::ImageInput &input, const char *path, weft_error *error)
 {
-    weft_code code;
-    auto input = open_input(path, &code, error);
-    WEFT_TRY(code);
-    const OIIO::ImageSpec &spec = input->spec();
-    if (is_exr(*input) && !is_usable(spec.full_width, spec.full_height))
+    constexpr double few = 1 << 20, most_in_byte = 4096, most_of_sensor_in_byte = 32;
+    const OIIO::ImageSpec &spec = input.spec();
+    if (is_exr(input) && !is_usable(spec.full_width, spec.full_height))
         return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable display window: %d x %d", path,
                          spec.full_width, spec.full_height);
-    if (!is_usable(spec.width, spec.height) || spec.nchannels < 1 || spec.depth > 1)
+    if (!is_usable(spec.width, spec.height) || spec.nchannels < 1 || spec.depth > 1 ||
+        (spec.tile_width > 0 && !is_usable(spec.tile_width, spec.tile_height)))
         return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable size: %d x %d x %d, %d channels", path,
                          spec.width, spec.height, spec.depth, spec.nchannels);
-    bool linear = spec.format.is_floating_point() || strcmp(input->format_name(), "raw") == 0;
+    double pixels = double(spec.width) * double(spec.height), bytes = double(weft_file_bytes(path));
+    if (pixels > bytes * (is_raw(input) ? most_of_sensor_in_byte : most_in_byte) && (is_raw(input) || pixels > few))
+        return weft_fail(error, WEFT_DAMAGED, "image '%s' is not whole: %.0f bytes cannot hold %d x %d pixels", path,
+                         bytes, spec.width, spec.height);
+    return WEFT_OK;
+}
+
+weft_code read_picture(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
+                       weft_colour_tags *tags, weft_error *error)
+{
+    weft_code code;
+    own_tags own;
+    auto input = weft_image_open(path, tags ? tags : &own.tags, &code, error);
+    WEFT_TRY(code);
+    WEFT_TRY(check_size(*input, path, error));
     if (kind)
-        *kind = linear ? WEFT_IMAGE_FLOAT : WEFT_IMAGE_INTEGER;
-    return read_floats(*input, path, image, error);
+        *kind = input->spec().format.is_floating_point() || is_raw(*input) ? WEFT_IMAGE_FLOAT : WEFT_IMAGE_INTEGER;
+    if (exif)
+        weft_exif_of(*input, path, exif);
+    if (image)
+        WEFT_TRY(read_floats(*input, path, image, error));
+    code = tags ? weft_colour_tags_of(*input, path, tags, error) : WEFT_OK;
+    if (code != WEFT_OK && image)
+        weft_image_free(image);
+    return code;
 }
 
 weft_code read_settings(const char *path, char **settings, weft_error *error)
@@ -187,6 +233,7 @@ weft_code read_photograph(const char *path, int width, int height, int bits, uin
                          bits);
     if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT16, samples))
         return weft_image_unreadable(error, path, input->geterror());
+    WEFT_TRY(weft_image_check_read(*input, path, error));
     size_t count = size_t(width) * size_t(height) * 3;
     for (size_t i = 0; i < count; i++)
         samples[i] = uint16_t(samples[i] >> (16 - bits));
@@ -271,9 +318,10 @@ template <typename Action> weft_code guarded(const char *path, weft_error *error
     }
 }
 
-weft_code image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+weft_code picture_read(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
+                       weft_colour_tags *tags, weft_error *error)
 {
-    return guarded(path, error, [&] { return read_image(path, image, kind, error); });
+    return guarded(path, error, [&] { return read_picture(path, image, kind, exif, tags, error); });
 }
 
 weft_code image_write(const char *path, const weft_image *image, const char *description, const char *settings,
@@ -306,6 +354,5 @@ weft_code snapshot_write(const char *path, const weft_image *image, const weft_c
 } // namespace
 
 extern "C" const weft_image_library weft_image_library_table = {
-    image_read,      image_write,    image_read_settings,   photograph_write,
-    photograph_read, snapshot_write, weft_exif_bridge_read, weft_colour_tags_bridge_read,
+    picture_read, image_write, image_read_settings, photograph_write, photograph_read, snapshot_write,
 };

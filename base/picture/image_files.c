@@ -3,22 +3,24 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+weft_code weft_picture_read(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
+                            weft_colour_tags *tags, weft_error *error)
 {
     const weft_image_library *library;
+    if (tags)
+        *tags = (weft_colour_tags){0};
     WEFT_TRY(weft_image_library_open(&library, error));
-    return library->image_read(path, image, kind, error);
+    return library->picture_read(path, image, kind, exif, tags, error);
 }
 
-weft_code weft_image_read_shown(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
 {
-    weft_exif exif;
-    WEFT_TRY(weft_exif_read(path, &exif, error));
-    WEFT_TRY(weft_image_read(path, image, kind, error));
-    weft_code code = weft_image_turn(image, exif.orientation, error);
-    if (code != WEFT_OK)
-        weft_image_free(image);
-    return code;
+    return weft_picture_read(path, image, kind, NULL, NULL, error);
+}
+
+weft_code weft_exif_read(const char *path, weft_exif *exif, weft_error *error)
+{
+    return weft_picture_read(path, NULL, NULL, exif, NULL, error);
 }
 
 weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error)
@@ -64,21 +66,6 @@ weft_code weft_snapshot_write(const char *path, const weft_image *image, const w
     const weft_image_library *library;
     WEFT_TRY(weft_image_library_open(&library, error));
     return library->snapshot_write(path, image, notes, error);
-}
-
-weft_code weft_exif_read(const char *path, weft_exif *exif, weft_error *error)
-{
-    const weft_image_library *library;
-    WEFT_TRY(weft_image_library_open(&library, error));
-    return library->exif_read(path, exif, error);
-}
-
-weft_code weft_colour_tags_read(const char *path, weft_colour_tags *tags, weft_error *error)
-{
-    const weft_image_library *library;
-    *tags = (weft_colour_tags){0};
-    WEFT_TRY(weft_image_library_open(&library, error));
-    return library->colour_tags_read(path, tags, error);
 }
 
 void weft_colour_tags_free(weft_colour_tags *tags)

@@ -34,7 +34,8 @@ weft_code weft_png_write(const char *path, const weft_image *image, const char *
 
 /* What the module weft_image_library.so does. Each entry is the public function of that name, or is called by it. */
 typedef struct weft_image_library {
-    weft_code (*image_read)(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
+    weft_code (*picture_read)(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
+                              weft_colour_tags *tags, weft_error *error);
     weft_code (*image_write)(const char *path, const weft_image *image, const char *description, const char *settings,
                              weft_error *error);
     weft_code (*image_read_settings)(const char *path, char **settings, weft_error *error);
@@ -44,17 +45,10 @@ typedef struct weft_image_library {
                                  weft_error *error);
     weft_code (*snapshot_write)(const char *path, const weft_image *image, const weft_camera_notes *notes,
                                 weft_error *error);
-    weft_code (*exif_read)(const char *path, weft_exif *exif, weft_error *error);
-    weft_code (*colour_tags_read)(const char *path, weft_colour_tags *tags, weft_error *error);
 } weft_image_library;
 
 /* What the module exports under this name. */
 extern const weft_image_library weft_image_library_table;
-
-/* The entry exif_read of the module. */
-weft_code weft_exif_bridge_read(const char *path, weft_exif *exif, weft_error *error);
-/* The entry colour_tags_read. */
-weft_code weft_colour_tags_bridge_read(const char *path, weft_colour_tags *tags, weft_error *error);
 
 /* Loads the module at the first call, from the folders that the program was linked to search, and keeps it. Errors:
  * WEFT_SYSTEM where it is missing or damaged. Thread-safe. */

@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const image_extension[] = {".png",  ".jpg", ".jpeg", ".exr", ".hdr", ".bmp", ".tif",
-                                              ".tiff", ".dng", ".cr2",  ".cr3", ".nef", ".arw", ".raf",
-                                              ".orf",  ".rw2", ".pef",  ".srw", NULL};
+static const char *const image_extension[] = {".png", ".jpg", ".jpeg", ".exr",  ".hdr", ".bmp", ".tif", ".tiff",
+                                              ".dng", ".cr2", ".cr3",  ".nef",  ".arw", ".raf", ".orf", ".rw2",
+                                              ".pef", ".srw", ".heic", ".heif", ".hif", NULL};
 static const char *const film_extension[] = {".mov", ".mp4", ".m4v", ".avi", ".mkv", ".mts", ".3gp", ".webm", NULL};
-static const char *const heif_extension[] = {".heic", ".heif", ".hif", ".avif", NULL};
 
 static bool ends_in(const char *name, const char *const *extension)
 {
@@ -101,7 +100,7 @@ weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *er
 }
 
 typedef struct census {
-    int files, films, heifs;
+    int files, films;
 } census;
 
 static weft_code count_file(void *into, const char *name, weft_error *error)
@@ -110,23 +109,17 @@ static weft_code count_file(void *into, const char *name, weft_error *error)
     census *seen = into;
     seen->files++;
     seen->films += ends_in(without_folder(name), film_extension);
-    seen->heifs += ends_in(without_folder(name), heif_extension);
     return WEFT_OK;
 }
 
 weft_code weft_images_missing(const char *folder, weft_error *error)
 {
-    static const char *const holds = "holds no photograph (JPEG, PNG, TIFF, BMP, EXR, HDR or camera raw)";
+    static const char *const holds = "holds no photograph (JPEG, HEIF, PNG, TIFF, BMP, EXR, HDR or camera raw)";
     census seen = {0};
     WEFT_TRY(visit_files(folder, count_file, &seen, error));
     if (seen.files == 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: it is empty; copy the files of the camera into it", folder,
                          holds);
-    if (seen.heifs > 0)
-        return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' %s: %d of its %d files are HEIF (.heic); set the phone to JPEG ('most compatible'), or "
-                         "convert them",
-                         folder, holds, seen.heifs, seen.files);
     if (seen.films > 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: %d of its %d files are films; take single photographs",
                          folder, holds, seen.films, seen.files);

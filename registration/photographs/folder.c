@@ -7,6 +7,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Photographs are relative to white paper, so a matrix that moves white is not for them: CIE XYZ. */
+static bool keeps_white(const weft_colour_space *space)
+{
+    for (int i = 0; i < 3; i++) {
+        if (fabs(space->matrix[i][0] + space->matrix[i][1] + space->matrix[i][2] - 1) > 1e-3)
+            return false;
+    }
+    return true;
+}
+
+static void take_colours(const weft_colour_claim *claim, weft_photographs_photograph *photograph)
+{
+    bool is_raw = photograph->exif.is_linear && !photograph->exif.is_float;
+    if (is_raw)
+        return;
+    bool is_clear = claim->kind == WEFT_CLAIM_CLEAR;
+    if (claim->kind == WEFT_CLAIM_NONE || (is_clear && weft_colour_space_has_srgb_primaries(&claim->space)))
+        return;
+    snprintf(photograph->colours, sizeof photograph->colours, "%s", claim->words);
+    if (!is_clear || !keeps_white(&claim->space))
+        return;
+    photograph->file_colour.terms = WEFT_COLOUR_LINEAR_TERMS;
+    for (int i = 0; i < 3; i++)
+        memcpy(photograph->file_colour.matrix[i], claim->space.matrix[i], sizeof claim->space.matrix[i]);
+}
+
 static void read_exif(const char *folder, weft_photographs_photograph *photograph)
 {
     weft_error error = {0};
@@ -15,10 +41,11 @@ static void read_exif(const char *folder, weft_photographs_photograph *photograp
         snprintf(photograph->remark, sizeof photograph->remark, "memory is short");
         return;
     }
-    if (weft_exif_read(path, &photograph->exif, &error) != WEFT_OK)
+    weft_colour_claim claim;
+    if (weft_colour_claim_read(path, NULL, NULL, &photograph->exif, &claim, &error) != WEFT_OK)
         snprintf(photograph->remark, sizeof photograph->remark, "%.180s", error.message);
     else
-        weft_photographs_read_colours(path, photograph);
+        take_colours(&claim, photograph);
     free(path);
 }
 
@@ -90,33 +117,6 @@ weft_code weft_photographs_list(const char *folder, weft_photograph_set *set, we
 }
 
 /* ---- What the files say of their colours ---- */
-
-/* Photographs are relative to white paper, so a matrix that moves white is not for them: CIE XYZ. */
-static bool keeps_white(const weft_colour_space *space)
-{
-    for (int i = 0; i < 3; i++) {
-        if (fabs(space->matrix[i][0] + space->matrix[i][1] + space->matrix[i][2] - 1) > 1e-3)
-            return false;
-    }
-    return true;
-}
-
-void weft_photographs_read_colours(const char *path, weft_photographs_photograph *photograph)
-{
-    weft_colour_claim claim;
-    bool is_raw = photograph->exif.is_linear && !photograph->exif.is_float;
-    if (weft_colour_claim_read(path, &claim, NULL) != WEFT_OK || is_raw)
-        return;
-    bool is_clear = claim.kind == WEFT_CLAIM_CLEAR;
-    if (claim.kind == WEFT_CLAIM_NONE || (is_clear && weft_colour_space_has_srgb_primaries(&claim.space)))
-        return;
-    snprintf(photograph->colours, sizeof photograph->colours, "%s", claim.words);
-    if (!is_clear || !keeps_white(&claim.space))
-        return;
-    photograph->file_colour.terms = WEFT_COLOUR_LINEAR_TERMS;
-    for (int i = 0; i < 3; i++)
-        memcpy(photograph->file_colour.matrix[i], claim.space.matrix[i], sizeof claim.space.matrix[i]);
-}
 
 static bool says_the_same(const weft_photographs_photograph *p, const weft_photographs_photograph *q)
 {

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { WIDTH = 64, HEIGHT = 48, BLACK = 256, WHITE = 16383 };
 
@@ -141,11 +142,73 @@ static void a_raw_file_says_how_long_it_was_exposed(void **state)
     assert_true(exif.is_linear && !exif.is_float);
 }
 
+static void assert_refused(const char *path, const char *reason)
+{
+    weft_image image;
+    weft_error error = {0};
+    assert_int_equal(weft_image_read(path, &image, NULL, &error), WEFT_DAMAGED);
+    if (!strstr(error.message, reason))
+        fail_msg("'%s' does not say '%s'", error.message, reason);
+}
+
+/* Programs that share the notes of a camera keep the file and drop what the sensor counted. */
+static void raw_files_without_their_pixels_are_no_photographs(void **state)
+{
+    (void)state;
+    write_dng("picture.dng", 1);
+    assert_int_equal(truncate("picture.dng", 600), 0);
+    assert_refused("picture.dng", "of 1 blocks of its pixels 1 are missing or end too early");
+    write_dng("picture.dng", 1);
+    assert_int_equal(truncate("picture.dng", WIDTH * HEIGHT * 2), 0);
+    assert_refused("picture.dng", "end too early");
+    write_dng("picture.dng", 0);
+    assert_refused("picture.dng", "of its 48 rows hold nothing");
+    write_dng("picture.dng", 1e4);
+    assert_refused("picture.dng", "the same value everywhere");
+}
+
+/* The reader of TIFF would show the values of the filters as grey. */
+static void a_raw_file_is_one_whatever_its_name(void **state)
+{
+    (void)state;
+    weft_exif exif;
+    write_dng("picture.tif", 1);
+    assert_int_equal(weft_exif_read("picture.tif", &exif, NULL), WEFT_OK);
+    assert_true(exif.is_linear && !exif.is_float);
+}
+
+static void a_jpeg_is_one_whatever_its_name(void **state)
+{
+    (void)state;
+    static const char *const name[] = {"picture.nef", "picture.dng", "picture.cr2"};
+    const weft_camera_notes notes = {"M", "N", "2026:01:01 00:00:00", 1, 1, 8, 100, 50, 50};
+    weft_image image;
+    assert_int_equal(weft_image_create(64, 48, &image, NULL), WEFT_OK);
+    for (int i = 0; i < 3 * 64 * 48; i++)
+        image.pixels[i] = (float)(i % 97) / 97;
+    for (int i = 0; i < 3; i++) {
+        weft_image read;
+        weft_image_kind kind;
+        weft_exif exif;
+        assert_int_equal(weft_snapshot_write("picture.jpg", &image, &notes, NULL), WEFT_OK);
+        assert_int_equal(rename("picture.jpg", name[i]), 0);
+        assert_int_equal(weft_image_read(name[i], &read, &kind, NULL), WEFT_OK);
+        assert_int_equal(kind, WEFT_IMAGE_INTEGER);
+        assert_int_equal(weft_exif_read(name[i], &exif, NULL), WEFT_OK);
+        assert_false(exif.is_linear);
+        weft_image_free(&read);
+    }
+    weft_image_free(&image);
+}
+
 int test_camera_raw(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(raw_values_are_linear_and_as_the_sensor_counted),
         cmocka_unit_test(a_raw_file_says_how_long_it_was_exposed),
+        cmocka_unit_test(raw_files_without_their_pixels_are_no_photographs),
+        cmocka_unit_test(a_raw_file_is_one_whatever_its_name),
+        cmocka_unit_test(a_jpeg_is_one_whatever_its_name),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }
