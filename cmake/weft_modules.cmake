@@ -126,11 +126,11 @@ weft_module(compare/report
     FOLDERS compare/report compare/report/page
     USES base base/picture base/text btf/dataset btf/direction btf/material compare/pictures compare/truth compress compress/weave_fit evaluate geometry player/draw reflectance)
 weft_module(compare/rti
-    USES base)
+    USES base base/picture btf/dataset)
 weft_module(compare/error_budget
     USES base base/text btf/dataset btf/material capture capture/virtual compress evaluate geometry registration)
 weft_module(compare/tradeoff
-    USES base base/picture base/text btf/dataset btf/direction btf/material compare/pictures compress compress/bard compress/fit compress/hold_out compress/run compress/weave_fit evaluate player/draw reflectance)
+    USES base base/picture base/text btf/dataset btf/direction btf/material compare/pictures compare/rti compress compress/bard compress/fit compress/hold_out compress/run compress/weave_fit evaluate player/draw reflectance)
 weft_module(inspect
     USES base base/picture base/text btf/dataset btf/direction btf/material btf/session capture compress/hold_out geometry player/draw reflectance)
 

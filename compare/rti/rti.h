@@ -16,8 +16,7 @@
 #ifndef WEFT_COMPARE_RTI_RTI_H
 #define WEFT_COMPARE_RTI_RTI_H
 
-#include "base/status.h"
-#include "base/vector.h"
+#include "btf/dataset/dataset.h"
 
 typedef enum weft_rti_model {
     WEFT_RTI_PTM,
@@ -42,5 +41,18 @@ int weft_rti_least_photographs(weft_rti_model model);
  * numbers; WEFT_OUT_OF_MEMORY. Thread-safe. */
 weft_code weft_rti_weights(weft_rti_model model, const weft_vec3 *light, int count, const weft_vec3 *asked,
                            int asked_count, double *weight, weft_error *error);
+
+/* ---- Texels in memory ---- */
+
+/* Whether the lamps of a layout are carried to others so: one view, far lights, and photographs enough even without
+ * every fifth. Pure. */
+bool weft_rti_is_for(weft_rti_model model, const weft_dataset_layout *layout);
+
+/* Predicts every image of every texel from those that are neither masked nor have left_out[image] != 0: `samples`
+ * [texel_count][image_count][3], `mask` [texel_count][image_count], predicted [texel_count][image_count][3] in the
+ * quantity of the layout; NaN for a texel of too few. Errors: WEFT_OUT_OF_MEMORY. */
+weft_code weft_rti_predict_texels(const weft_dataset_layout *layout, const uint8_t *left_out, weft_rti_model model,
+                                  const weft_half *samples, const uint8_t *mask, long texel_count, weft_half *predicted,
+                                  weft_error *error);
 
 #endif

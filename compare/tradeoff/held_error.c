@@ -296,20 +296,30 @@ static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *m
     return code;
 }
 
-static weft_code ask_bard(const weft_held_bench *bench, const weft_priced_model *model, const weft_trial *trial,
-                          const uint8_t *unseen, said *answer, weft_error *error)
+/* What the fitted images say of all. */
+static weft_code predict_texels(const weft_priced_model *model, const weft_texel_subset *subset, const uint8_t *unseen,
+                                weft_half *predicted, weft_error *error)
 {
-    const weft_texel_subset *subset = fitted_subset(bench, model);
     const weft_dataset_layout *layout = &subset->layout;
     const weft_bard_options options = weft_bard_defaults();
     long texels = (long)layout->width * layout->height;
-    size_t values = 3 * (size_t)texels * (size_t)layout->image_count;
+    return model->family == WEFT_PRICED_BARD ? weft_bard_predict_texels(layout, unseen, &options, subset->samples,
+                                                                        subset->mask, texels, predicted, error)
+                                             : weft_rti_predict_texels(layout, unseen, model->rti, subset->samples,
+                                                                       subset->mask, texels, predicted, error);
+}
+
+static weft_code ask_bard_or_rti(const weft_held_bench *bench, const weft_priced_model *model, const weft_trial *trial,
+                                 const uint8_t *unseen, said *answer, weft_error *error)
+{
+    const weft_texel_subset *subset = fitted_subset(bench, model);
+    const weft_dataset_layout *layout = &subset->layout;
+    size_t values = 3 * (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count;
     weft_half *predicted = malloc(values * sizeof *predicted);
     weft_predictor *predictor;
     if (!predicted)
         return weft_fail_memory(error, "predictions", values * sizeof *predicted);
-    weft_code code =
-        weft_bard_predict_texels(layout, unseen, &options, subset->samples, subset->mask, texels, predicted, error);
+    weft_code code = predict_texels(model, subset, unseen, predicted, error);
     if (code != WEFT_OK) {
         free(predicted);
         return code;
@@ -351,8 +361,8 @@ static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *mode
 {
     if (model->family == WEFT_PRICED_RAW)
         return weft_trial_ask_photographs(trial, model->options.heights, &answer->held, error);
-    if (model->family == WEFT_PRICED_BARD)
-        return ask_bard(bench, model, trial, unseen, answer, error);
+    if (model->family == WEFT_PRICED_BARD || model->family == WEFT_PRICED_RTI)
+        return ask_bard_or_rti(bench, model, trial, unseen, answer, error);
     if (model->family == WEFT_PRICED_CLOTH)
         return ask_cloth(bench, model, trial, unseen, answer, error);
     if (!bench->is_fitted)

@@ -157,8 +157,12 @@ static void put_chart(weft_page *page, const weft_tradeoff *tradeoff, int which)
                                         tradeoff->row_count,
                                         (const double(*)[2])chart.point[s],
                                         chart.note};
-    series[FRONT] = (weft_chart_series){
-        "not beaten", 6, WEFT_CHART_STEPS, tradeoff->row_count, (const double(*)[2])chart.point[FRONT], NULL};
+    series[FRONT] = (weft_chart_series){"not beaten",
+                                        WEFT_PRICED_FAMILIES,
+                                        WEFT_CHART_STEPS,
+                                        tradeoff->row_count,
+                                        (const double(*)[2])chart.point[FRONT],
+                                        NULL};
     weft_chart_write_logarithmic(page, &(weft_chart){title[which],
                                                      {x_label[which], "", 0, 0, 0},
                                                      {"relative RMSE, not fitted", " %", 0, 0, 0},
@@ -248,8 +252,9 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
         "relative to the little light there is. These errors, and PSNR, SSIM and FLIP of pictures, are of photographs "
         "that were not fitted; each texel is a pixel. 95 % interval: the mean width of the interval that holds 95 % of "
         "these samples, relative to the mean sample. Flicker: while a light sweeps across, the brightness of a place "
-        "moves so much farther than up and down once; 0 is smooth. BARD has no frames, because the player does not "
-        "draw it.</p>\n",
+        "moves so much farther than up and down once; 0 is smooth. BARD and RTI have no frames, because the player "
+        "does "
+        "not draw them.</p>\n",
         page->html);
 }
 

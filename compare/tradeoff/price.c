@@ -233,12 +233,15 @@ static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_pri
                                        error);
 }
 
-/* Its photographs as half floats. */
-static void price_bard(const weft_price_shop *shop, weft_price *price)
+/* The photographs of BARD are half floats, numbers of RTI bytes. */
+static void price_bard_or_rti(const weft_price_shop *shop, const weft_priced_model *model, weft_price *price)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    price->photograph_count = weft_bard_count_photographs(layout, NULL);
-    price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * price->photograph_count;
+    if (model->family == WEFT_PRICED_BARD)
+        price->photograph_count = weft_bard_count_photographs(layout, NULL);
+    price->bits_a_texel = model->family == WEFT_PRICED_BARD
+                              ? 8.0 * 3 * sizeof(weft_half) * price->photograph_count
+                              : 8.0 * 3 * weft_rti_coefficients(model->rti, price->photograph_count);
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
 }
 
@@ -277,8 +280,8 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
         return price_raw(shop, model->options.heights, price, error);
     if (model->family == WEFT_PRICED_CLOTH)
         return price_cloth(shop, model->cloth, price, error);
-    if (model->family == WEFT_PRICED_BARD) {
-        price_bard(shop, price);
+    if (model->family == WEFT_PRICED_BARD || model->family == WEFT_PRICED_RTI) {
+        price_bard_or_rti(shop, model, price);
         return WEFT_OK;
     }
     WEFT_TRY(fit(shop, model, left_out, error));

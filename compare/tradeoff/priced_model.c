@@ -129,6 +129,16 @@ static void add_bard(model_list *list)
         add_alone(list, WEFT_PRICED_BARD, "BARD from one light");
 }
 
+static void add_rti(model_list *list)
+{
+    for (weft_rti_model model = 0; model < WEFT_RTI_MODELS; model++) {
+        if (!weft_rti_is_for(model, list->layout))
+            continue;
+        add_alone(list, WEFT_PRICED_RTI, weft_rti_name(model));
+        list->model[list->count - 1].rti = model;
+    }
+}
+
 static void add_raw(model_list *list, bool through, const char *name)
 {
     add_alone(list, WEFT_PRICED_RAW, name);
@@ -161,6 +171,7 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
     add_components(&list);
     add_subsets(&list);
     add_bard(&list);
+    add_rti(&list);
     if (dataset->cloth)
         add_alone(&list, WEFT_PRICED_CLOTH, "analytic cloth");
     add_photographs(&list);
@@ -169,8 +180,8 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
 
 const char *weft_priced_family_name(weft_priced_family family)
 {
-    static const char *const name[] = {"lobes",       "components", "fewer photographs",
-                                       "photographs", "BARD",       "analytic cloth"};
+    static const char *const name[] = {"lobes",          "components", "fewer photographs", "photographs", "BARD",
+                                       "analytic cloth", "RTI"};
     return name[family];
 }
 

@@ -3,6 +3,7 @@
 #define WEFT_COMPARE_TRADEOFF_PRICED_MODEL_H
 
 #include "base/status.h"
+#include "compare/rti/rti.h"
 #include "compress/options/options.h"
 
 #include <stdbool.h>
@@ -17,6 +18,7 @@ typedef enum weft_priced_family {
     WEFT_PRICED_RAW,   /* the photographs, interpolated */
     WEFT_PRICED_BARD,  /* those under the light along the normal, which say all others (reflectance/bard/bard.h) */
     WEFT_PRICED_CLOTH, /* analytic (compare/tradeoff/cloth.h) */
+    WEFT_PRICED_RTI,   /* of one view: what users of RTI know (compare/rti/rti.h) */
     WEFT_PRICED_FAMILIES
 } weft_priced_family;
 
@@ -33,8 +35,9 @@ typedef struct weft_priced_model {
     weft_priced_family family;
     weft_compress_options options; /* of raw only heights: seen through them */
     weft_photographs_taken photographs;
-    const char *cloth; /* file of a WEFT_PRICED_CLOTH; not owned */
-    int work;          /* of a fit, relative to others */
+    const char *cloth;  /* file of a WEFT_PRICED_CLOTH; not owned */
+    weft_rti_model rti; /* of a WEFT_PRICED_RTI */
+    int work;           /* of a fit, relative to others */
 } weft_priced_model;
 
 /* What else of a dataset decides which models it can carry. */
@@ -58,7 +61,7 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
  * same without: it keeps heights only where they gain enough (compress/hold_out/hold_out.h). Pure. */
 bool weft_priced_heights_are_kept(double without, double through);
 
-/* Whether the model is what weft_compress fits; else it is raw, BARD or analytic cloth. Pure. */
+/* Whether the model is what weft_compress fits; else it is raw, BARD, analytic cloth or of RTI. Pure. */
 bool weft_priced_model_is_fit(const weft_priced_model *model);
 
 /* Whether it is such a fit of each texel alone: of lobes and tables, not of components. Pure. */

@@ -21,8 +21,8 @@ typedef struct weft_price {
     double bits_a_texel;         /* of the dataset */
     double fit_s;                /* of the whole dataset */
     double evaluations_a_second; /* of one thread: BRDFs at places and directions drawn at random */
-    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD, which nothing plays */
-    bool has_flicker;            /* of BARD there is none */
+    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD and RTI, which nothing plays */
+    bool has_flicker;            /* of BARD and RTI there is none */
     double flicker;              /* below */
 } weft_price;
 
