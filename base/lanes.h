@@ -79,14 +79,27 @@ WEFT_INLINE lane_bits lane_bits_select(lane_bits mask, lane_bits yes, lane_bits 
     return (yes & mask) | (no & ~mask);
 }
 
+/* b where one is no number. */
 WEFT_INLINE lanes lanes_max(lanes a, lanes b)
 {
+#if defined(__AVX512F__)
+    return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
+#elif defined(__AVX2__)
+    return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
+#else
     return lanes_select(a > b, a, b);
+#endif
 }
 
 WEFT_INLINE lanes lanes_min(lanes a, lanes b)
 {
+#if defined(__AVX512F__)
+    return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
+#elif defined(__AVX2__)
+    return (lanes)_mm256_min_ps((__m256)a, (__m256)b);
+#else
     return lanes_select(a < b, a, b);
+#endif
 }
 
 WEFT_INLINE lanes lanes_where(lane_bits mask, lanes x)
@@ -161,7 +174,7 @@ WEFT_INLINE void lanes_exp2_each(int count, const lanes *x, lanes *result)
         f[i] = x[i] - n[i];
 #else
         /* 3 2^22 leaves no bits for a fraction: the last bits of the sum are the nearest whole number. */
-        lanes clamped = lanes_select(x[i] > -126.0f, x[i], lanes_of(-126));
+        lanes clamped = lanes_max(x[i], lanes_of(-126));
         n[i] = clamped + 12582912.0f;
         f[i] = clamped - (n[i] - 12582912.0f);
 #endif

@@ -6,7 +6,8 @@
 #include <string.h>
 
 enum {
-    PIECE = 27,                     /* slots whose columns stay in the first cache */
+    STEP = 2,                       /* slots whose powers are found in step */
+    PIECE = 28,                     /* slots whose columns stay in the first cache */
     TILE = LANES == 8 ? 3 : 5,      /* TILE x TILE sums stay in registers: AVX2 has half as many as AVX-512 and NEON */
     LAST = WEFT_GRAM_COLUMNS + TILE /* columns are read by whole tiles */
 };
@@ -37,49 +38,75 @@ WEFT_INLINE strip_lanes lanes_of_strip(const weft_bundle *bundle, const weft_str
     return own;
 }
 
-/* What the columns of the lobes are made of at one sample. */
+/* What the columns of a lobe are made of at some samples. */
 typedef struct lobe_lanes {
-    lanes b[WEFT_GRAM_LOBES], log2_b[WEFT_GRAM_LOBES], h[WEFT_GRAM_LOBES]; /* h = k b^(N - 1), 0 where b <= 0 */
+    lanes b[STEP], log2_b[STEP], h[STEP]; /* at least LEAST_BASE; h = k b^(N - 1), 0 where l . M v is less */
 } lobe_lanes;
 
-WEFT_INLINE lobe_lanes lobes_at(const lanes l[3], lanes k, const weft_gram_point *point, int lobe_count,
-                                const strip_lanes *own)
+WEFT_INLINE lobe_lanes lobe_at(lanes light[STEP][3], const lanes k[STEP], const lanes m[3], float exponent)
 {
     lobe_lanes at;
-    lanes dot[WEFT_GRAM_LOBES], base[WEFT_GRAM_LOBES], power[WEFT_GRAM_LOBES];
-    WEFT_EACH (lobe_count)
-        dot[i] = l[0] * own->m[i][0] + l[1] * own->m[i][1] + l[2] * own->m[i][2];
-    WEFT_EACH (lobe_count)
-        base[i] = lanes_select(dot[i] > LEAST_BASE, dot[i], lanes_of(LEAST_BASE));
-    lanes_log2_each(lobe_count, base, at.log2_b);
-    WEFT_EACH (lobe_count)
-        power[i] = (point->exponent[i] - 1) * at.log2_b[i];
-    lanes_exp2_each(lobe_count, power, power);
-    WEFT_EACH (lobe_count) {
-        at.b[i] = lanes_where(dot[i] > LEAST_BASE, dot[i]);
-        at.h[i] = lanes_where(dot[i] > LEAST_BASE, k * power[i]);
+    lanes dot[STEP], power[STEP];
+    WEFT_EACH (STEP) {
+        dot[i] = light[i][0] * m[0] + light[i][1] * m[1] + light[i][2] * m[2];
+        at.b[i] = lanes_max(dot[i], lanes_of(LEAST_BASE));
     }
+    lanes_log2_each(STEP, at.b, at.log2_b);
+    WEFT_EACH (STEP)
+        power[i] = (exponent - 1) * at.log2_b[i];
+    lanes_exp2_each(STEP, power, power);
+    WEFT_EACH (STEP)
+        at.h[i] = lanes_where(dot[i] > LEAST_BASE, k[i] * power[i]);
     return at;
 }
 
-/* Columns of one slot. */
-WEFT_INLINE void write_columns(const weft_bundle *bundle, const float *cosine, const float *value,
-                               const weft_gram_point *point, int lobe_count, const strip_lanes *own, int sample,
-                               int slot, lanes columns[LAST][PIECE])
+WEFT_INLINE void load_light(const weft_bundle *bundle, int sample, lanes light[STEP][3])
 {
-    const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
-                        lanes_load(bundle->light[2] + sample)};
-    lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
-    columns[0][slot] = k;
-    const lobe_lanes at = lobes_at(l, k, point, lobe_count, own);
-    WEFT_EACH (lobe_count) {
-        lanes g = at.h[i] * at.b[i];
-        f += point->amplitude[i] * g;
+    WEFT_EACH (STEP) {
         for (int axis = 0; axis < 3; axis++)
-            columns[1 + 4 * i + axis][slot] = at.h[i] * l[axis];
-        columns[4 + 4 * i][slot] = g * at.log2_b[i];
+            light[i][axis] = lanes_load(bundle->light[axis] + sample + i * WEFT_STRIP_LANES);
     }
-    columns[1 + 4 * lobe_count][slot] = lanes_load(value + sample) - own->table * f;
+}
+
+/* The columns of lobe number `lobe` in some slots, and its share of e. A lobe at a time, and STEP slots in step: all
+ * that a slot needs stays in registers. The last slot may be one too many. */
+WEFT_INLINE void write_lobe(const weft_bundle *bundle, const weft_gram_point *point, int lobe, const strip_lanes *own,
+                            int first, int slots, lanes columns[LAST][PIECE], lanes *error)
+{
+    const lanes m[3] = {own->m[lobe][0], own->m[lobe][1], own->m[lobe][2]};
+    const lanes strength = own->table * point->amplitude[lobe];
+    const float exponent = point->exponent[lobe];
+    lanes(*column)[PIECE] = columns + 1 + 4 * lobe;
+    for (int slot = 0; slot < slots; slot += STEP) {
+        lanes light[STEP][3], k[STEP];
+        load_light(bundle, first + slot * WEFT_STRIP_LANES, light);
+        WEFT_EACH (STEP)
+            k[i] = columns[0][slot + i];
+        const lobe_lanes at = lobe_at(light, k, m, exponent);
+        WEFT_EACH (STEP) {
+            lanes g = at.h[i] * at.b[i];
+            for (int axis = 0; axis < 3; axis++)
+                column[axis][slot + i] = at.h[i] * light[i][axis];
+            column[3][slot + i] = g * at.log2_b[i];
+            error[slot + i] -= strength * g;
+        }
+    }
+}
+
+/* The columns of some slots from sample `first` on. */
+WEFT_INLINE void write_columns(const weft_bundle *bundle, const float *cosine, const float *value,
+                               const weft_gram_point *point, int lobe_count, const strip_lanes *own, int first,
+                               int slots, lanes columns[LAST][PIECE])
+{
+    lanes *error = columns[1 + 4 * lobe_count];
+    const lanes diffuse = own->table * point->diffuse;
+    for (int slot = 0; slot < slots; slot++) {
+        int sample = first + slot * WEFT_STRIP_LANES;
+        columns[0][slot] = lanes_load(cosine + sample);
+        error[slot] = lanes_load(value + sample) - diffuse * columns[0][slot];
+    }
+    WEFT_EACH (lobe_count)
+        write_lobe(bundle, point, i, own, first, slots, columns, error);
 }
 
 /* <h_i l_a | h_j l_b> = <h_i l_b | h_j l_a>: the product of columns p < q of two lobes is that of two others which are
@@ -176,9 +203,8 @@ WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, cons
             memset(own_sums, 0, (size_t)products * sizeof *own_sums);
             for (int first = 0; first < end; first += PIECE) {
                 int piece = end - first < PIECE ? end - first : PIECE;
-                for (int slot = 0; slot < piece; slot++)
-                    write_columns(bundle, cosine, value, point, lobe_count, &own,
-                                  strip->first + (first + slot) * WEFT_STRIP_LANES + lane, slot, columns);
+                write_columns(bundle, cosine, value, point, lobe_count, &own,
+                              strip->first + first * WEFT_STRIP_LANES + lane, piece, columns);
                 add_products(columns, piece, count, own_sums);
             }
             store_sums(strip, lane, own_sums, count, bundle->view_stride, sums);
@@ -213,15 +239,21 @@ void WEFT_KERNEL(weft_gram_evaluate)(const weft_bundle *bundle, const float *cos
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, point->lobe_count, NULL, lane);
             int end = part == WEFT_PART_COARSE ? strip->coarse_slots : strip->slots;
-            for (int slot = 0; slot < end; slot++) {
+            for (int slot = 0; slot < end; slot += STEP) {
                 int sample = strip->first + slot * WEFT_STRIP_LANES + lane;
-                const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
-                                    lanes_load(bundle->light[2] + sample)};
-                lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
-                const lobe_lanes at = lobes_at(l, k, point, point->lobe_count, &own);
-                for (int i = 0; i < point->lobe_count; i++)
-                    f += point->amplitude[i] * at.h[i] * at.b[i];
-                lanes_store(result + sample, f);
+                lanes light[STEP][3], k[STEP], f[STEP];
+                load_light(bundle, sample, light);
+                WEFT_EACH (STEP) {
+                    k[i] = lanes_load(cosine + sample + i * WEFT_STRIP_LANES);
+                    f[i] = k[i] * point->diffuse;
+                }
+                for (int lobe = 0; lobe < point->lobe_count; lobe++) {
+                    const lobe_lanes at = lobe_at(light, k, own.m[lobe], point->exponent[lobe]);
+                    WEFT_EACH (STEP)
+                        f[i] += point->amplitude[lobe] * at.h[i] * at.b[i];
+                }
+                for (int i = 0; i < STEP && slot + i < end; i++)
+                    lanes_store(result + sample + i * WEFT_STRIP_LANES, f[i]);
             }
         }
     }
