@@ -13,6 +13,7 @@ enum {
     RACE_PASSES = 3,
     START_PASSES = 6,
     SCREENED = 4, /* lobes that are followed of those that the screen ranks */
+    STEPS = 2,    /* as many for a number of lobes that is only a step to the next */
     INCUMBENT = 2,
     CHALLENGER /* places among the trials of a workspace */
 };
@@ -67,16 +68,24 @@ static double least_so_far(const search *own)
     return own->has_challenger ? fmin(least, own->left[CHALLENGER]) : least;
 }
 
-/* Follows a start that has been looked at once; to the end only if it does not fall behind. */
+/* Whether the fit shall have more lobes than the starts have so far. */
+static bool is_step(const search *own)
+{
+    return own->options.lobe_count < own->wanted->lobe_count;
+}
+
+/* Follows a start that has been looked at once; to the end only if it does not fall behind and if no more lobes are to
+ * come. */
 static void follow(search *own, bool is_usual)
 {
     weft_fit_workspace *workspace = own->workspace;
     weft_fit_options race = own->options;
     double least = least_so_far(own);
     race.max_passes = RACE_PASSES;
-    if (isfinite(least))
+    race.wanted = isfinite(least) ? BEATEN * least : 0;
+    if (isfinite(least) || is_step(own))
         weft_workspace_refine(own->bundle, own->samples, own->channel, &race, workspace, 0.1);
-    if (workspace->trial[0].residual < BEATEN * least)
+    if (workspace->trial[0].residual < BEATEN * least && !is_step(own))
         weft_workspace_refine(own->bundle, own->samples, own->channel, &own->options, workspace, 0.1);
     own->quarters += (own->options.coarse ? 1 : 4) * workspace->trial[0].fit.passes;
     keep(own, is_usual);
@@ -132,10 +141,10 @@ static void grow(search *own)
     weft_fit_workspace *workspace = own->workspace;
     const weft_fit base = workspace->trial[INCUMBENT].fit;
     weft_fit_lobe lobe[SCREENED];
-    int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
-                                &workspace->trial[INCUMBENT], SCREENED, lobe);
-    own->has_incumbent = own->has_challenger = false;
     own->options.lobe_count = base.lobe_count + 1;
+    int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
+                                &workspace->trial[INCUMBENT], is_step(own) ? STEPS : SCREENED, lobe);
+    own->has_incumbent = own->has_challenger = false;
     if (own->options.lobe_count <= 2) {
         weft_fit usual = usual_start(own->options.lobe_count, &base.frame);
         try_shapes(own, &usual, true);
