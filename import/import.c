@@ -69,10 +69,9 @@ static weft_code note_partial(weft_import_run *run, weft_error *error)
     if (run->partial == 0)
         return WEFT_OK;
     return weft_lines_add(&run->report->notes, error,
-                          "%d photograph%s, such as '%s', do%s not hold all pixels that they show: %.3g %% of all "
-                          "samples are masked as missing",
-                          run->partial, run->partial == 1 ? "" : "s",
-                          run->collection->photograph[run->first_partial].name, run->partial == 1 ? "es" : "",
+                          "'%s' does not hold all pixels that it shows (%d of %d photographs): %.3g %% of all samples "
+                          "are masked as missing",
+                          run->collection->photograph[run->first_partial].name, run->partial, run->messages.read,
                           100 * (double)run->lacking / (double)run->samples);
 }
 

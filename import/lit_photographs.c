@@ -86,6 +86,8 @@ static weft_code add_listed(const char *folder, const weft_light_list *list, wef
 {
     weft_lines images;
     WEFT_TRY(check_lights(list, error));
+    for (int i = 0; i < list->notes.count; i++)
+        WEFT_TRY(weft_lines_add(&collection->notes, error, "%s", list->notes.line[i]));
     WEFT_TRY(weft_images_list(folder, &images, error));
     weft_code code = add_rows(folder, list, &images, collection, error);
     weft_lines_free(&images);

@@ -1,5 +1,6 @@
 #include "base/text/light_list.h"
 
+#include "base/numeric/statistics.h"
 #include "base/text/csv.h"
 #include "base/text/text_file.h"
 
@@ -7,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double unit_tolerance = 0.05;
+static const double unit_tolerance = 0.05, nearest_mm = 20;
 
 /* ---- Names ---- */
 
@@ -113,6 +114,31 @@ static bool read_number(const char *text, double *value)
     return end != text && !*end && isfinite(*value);
 }
 
+/* Whether a comma stands between two digits. */
+static bool has_decimal_comma(const char *text)
+{
+    for (const char *at = strchr(text, ','); at; at = strchr(at + 1, ',')) {
+        if (at > text && isdigit((unsigned char)at[-1]) && isdigit((unsigned char)at[1]))
+            return true;
+    }
+    return false;
+}
+
+static weft_code fail_row(const weft_light_list *list, int number, bool has_commas, weft_error *error)
+{
+    return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: expected a name and three numbers%s", list->path, number,
+                     has_commas ? "; if its commas are decimal, write points" : "");
+}
+
+/* Whether the name that was left of a line ends in a number: then the line holds more than three, halves of decimals.
+ */
+static bool ends_in_number(const char *name)
+{
+    double value;
+    const char *comma = strrchr(name, ',');
+    return comma && read_number(comma + 1, &value);
+}
+
 static char *trimmed(char *text)
 {
     while (isspace((unsigned char)*text) || *text == '"')
@@ -129,13 +155,16 @@ static weft_code read_lp_row(weft_light_list *list, char *line, int number, weft
 {
     double value[3];
     char mark[3];
+    bool has_commas = has_decimal_comma(line);
     for (int i = 2; i >= 0; i--) {
         char *word = cut_last_word(line, &mark[i]);
         if (!word || !read_number(word, &value[i]) || mark[i] != mark[2])
-            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: expected a name and three numbers", list->path, number);
+            return fail_row(list, number, has_commas, error);
         if (word == line) /* nothing stands before it */
             *line = 0;
     }
+    if (mark[0] == ',' && ends_in_number(line))
+        return fail_row(list, number, true, error);
     weft_listed_light row = {.line = number, .has_light = true, .light = {value[0], value[1], value[2]}};
     return add_row(list, trimmed(line), row, error);
 }
@@ -144,18 +173,45 @@ static size_t count_lines(const char *text)
 {
     size_t count = 1;
     for (; *text; text++)
-        count += *text == '\n';
+        count += *text == '\n' || *text == '\r';
     return count;
+}
+
+static bool is_comment(const char *line)
+{
+    return *line == '#' || *line == '%' || strncmp(line, "//", 2) == 0;
+}
+
+/* A comment behind the numbers. A name may hold the mark, too, but no number follows it in a name. */
+static void cut_comment(char *line)
+{
+    char *mark = strrchr(line, '#');
+    double value;
+    const char *last = strrchr(line, ' ');
+    if (mark && mark > line && isspace((unsigned char)mark[-1]) && !(last && read_number(last + 1, &value)))
+        *mark = 0;
+}
+
+/* Lines of old computers end in a carriage return alone. */
+static void unify_line_ends(char *text)
+{
+    for (; *text; text++) {
+        if (*text == '\r')
+            *text = text[1] == '\n' ? ' ' : '\n';
+    }
 }
 
 static weft_code read_lp_lines(weft_light_list *list, char *text, weft_error *error)
 {
     double announced = -1;
     int number = 0, first = 0;
+    unify_line_ends(text);
     for (char *rest = text; rest;) {
         char *line = trimmed(strsep(&rest, "\n"));
+        cut_comment(line);
+        line = trimmed(line);
         number++;
-        if (!*line || *line == '#')
+        if (!*line || is_comment(line))
             continue;
         if (announced < 0 && !read_number(line, &announced))
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: an .lp file begins with the number of its photographs",
@@ -165,10 +221,10 @@ static weft_code read_lp_lines(weft_light_list *list, char *text, weft_error *er
         else
             WEFT_TRY(read_lp_row(list, line, number, error));
     }
-    if (announced != list->count)
-        return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: %g photographs are announced, but %d are listed", list->path,
-                         first, announced, list->count);
-    return WEFT_OK;
+    if (announced == list->count || list->count == 0)
+        return WEFT_OK;
+    return weft_lines_add(&list->notes, error, "%s:%d: %g photographs are announced, but %d are listed", list->path,
+                          first, announced, list->count);
 }
 
 static weft_code read_lp(weft_light_list *list, weft_error *error)
@@ -265,15 +321,33 @@ static weft_code read_table(weft_light_list *list, weft_error *error)
 
 /* ---- The list ---- */
 
-/* A list of unit vectors holds nothing else: one that is far from a unit makes all of them positions. */
-static void tell_positions(weft_light_list *list)
+/* No lamp stands so near to a sample that its position in mm could be taken for a direction, whatever its length. */
+static weft_code tell_positions(weft_light_list *list, weft_error *error)
 {
+    double *length = malloc((size_t)list->count * sizeof *length), shortest = INFINITY, longest = 0;
+    size_t count = 0;
+    if (!length)
+        return weft_fail_memory(error, list->path, (size_t)list->count * sizeof *length);
     for (int i = 0; i < list->count; i++) {
-        if (list->row[i].has_light && fabs(weft_length(list->row[i].light) - 1) > unit_tolerance)
-            list->positions = true;
+        if (!list->row[i].has_light)
+            continue;
+        length[count] = weft_length(list->row[i].light);
+        shortest = fmin(shortest, length[count]);
+        longest = fmax(longest, length[count++]);
     }
-    for (int i = 0; !list->positions && i < list->count; i++)
-        list->row[i].light = weft_unit(list->row[i].light);
+    list->positions = count > 0 && weft_quantile(length, count, 0.5) >= nearest_mm;
+    free(length);
+    if (list->positions || count == 0)
+        return WEFT_OK;
+    for (int i = 0; i < list->count; i++) {
+        if (list->row[i].has_light)
+            list->row[i].light = weft_unit(list->row[i].light);
+    }
+    if (shortest > 1 - unit_tolerance && longest < 1 + unit_tolerance)
+        return WEFT_OK;
+    return weft_lines_add(&list->notes, error,
+                          "'%s': its vectors are %.3g to %.3g long and taken as directions; positions are in mm",
+                          list->path, shortest, longest);
 }
 
 weft_code weft_light_list_read(const char *path, weft_light_list *list, weft_error *error)
@@ -286,8 +360,8 @@ weft_code weft_light_list_read(const char *path, weft_light_list *list, weft_err
     if (code == WEFT_OK && list->count == 0)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' lists no photograph", path);
     if (code == WEFT_OK)
-        tell_positions(list);
-    else
+        code = tell_positions(list, error);
+    if (code != WEFT_OK)
         weft_light_list_free(list);
     return code;
 }
@@ -298,5 +372,6 @@ void weft_light_list_free(weft_light_list *list)
         free(list->row[i].file);
     free(list->row);
     free(list->path);
+    weft_lines_free(&list->notes);
     *list = (weft_light_list){0};
 }

@@ -7,7 +7,7 @@
 #ifndef WEFT_BASE_TEXT_LIGHT_LIST_H
 #define WEFT_BASE_TEXT_LIGHT_LIST_H
 
-#include "base/status.h"
+#include "base/text/lines.h"
 #include "base/vector.h"
 
 #include <stdbool.h>
@@ -26,14 +26,16 @@ typedef struct weft_listed_light {
 typedef struct weft_light_list {
     char *path;       /* for messages */
     bool of_pictures; /* an .lp file: in the frame of each picture; else in that of the sample */
-    bool positions;   /* lights are positions, else unit vectors: all lengths within 5 % of 1 are made 1 */
+    bool positions;   /* lights are positions in mm: half of them are 20 mm long or more; else unit vectors */
     int count;
     weft_listed_light *row; /* [count] */
+    weft_lines notes;       /* what the reader of a report should know of the list, a line each */
 } weft_light_list;
 
-/* Reads a table where the name ends in .csv, else an .lp file. Errors: WEFT_BAD_INPUT "PATH:LINE: ..." for a row that
- * is none, a lamp at the origin, a file listed twice, or another count than an .lp file says; WEFT_SYSTEM for memory.
- * Thread-safe. */
+/* Reads a table where the name ends in .csv, else an .lp file. Empty lines and comments are passed over. Notes another
+ * count than an .lp file says, and vectors that are taken for directions though they are not as long as one. Errors:
+ * WEFT_BAD_INPUT "PATH:LINE: ..." for a row that is none, decimal commas, a lamp at the origin, or a file listed twice;
+ * WEFT_SYSTEM for memory. Thread-safe. */
 weft_code weft_light_list_read(const char *path, weft_light_list *list, weft_error *error);
 void weft_light_list_free(weft_light_list *list);
 

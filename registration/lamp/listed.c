@@ -226,6 +226,8 @@ weft_code weft_listed_compare(const weft_light_list *list, const weft_photograph
     if (!scratch)
         return weft_fail_memory(error, "angles", (size_t)count * sizeof *scratch);
     weft_code code = note_absent(list, photograph, count, notes, error);
+    for (int i = 0; code == WEFT_OK && i < list->notes.count; i++)
+        code = weft_lines_add(notes, error, "%s", list->notes.line[i]);
     if (code == WEFT_OK)
         code = compare_lamps(list, photograph, count, scratch, notes, error);
     if (code == WEFT_OK)

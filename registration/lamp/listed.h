@@ -27,8 +27,8 @@ weft_code weft_listed_check(const weft_light_list *list, const weft_photographs_
 weft_listed_lamp weft_listed_lamp_of(const weft_light_list *list, const weft_photographs_photograph *photograph);
 
 /* Adds a line for each photograph that is used, whose lamp or view lies farther from the list than 2.5 standard errors
- * of both; one line where the whole list seems to have other axes, or has rows without a photograph. What a list says
- * of the azimuth of views counts from anywhere. Errors: WEFT_SYSTEM for memory. */
+ * of both; the notes of the list; one line where the whole list seems to have other axes, or has rows without a
+ * photograph. What a list says of the azimuth of views counts from anywhere. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_listed_compare(const weft_light_list *list, const weft_photographs_photograph *photograph, int count,
                               weft_lines *notes, weft_error *error);
 
