@@ -18,7 +18,8 @@ const double weft_paper_margin_mm = 5;
 
 static const double smallest_side_mm = 40, largest_side_mm = 2000;
 
-static const weft_paper known_paper[] = {{"A4", 210, 297}, {"letter", 215.9, 279.4}};
+static const weft_paper known_paper[] = {{"A4", 210, 297},         {"A3", 297, 420},        {"A5", 148, 210},
+                                         {"letter", 215.9, 279.4}, {"legal", 215.9, 355.6}, {"tabloid", 279.4, 431.8}};
 
 static bool is_side(double side_mm)
 {
@@ -50,7 +51,8 @@ weft_code weft_paper_parse(const char *text, weft_paper *paper, weft_error *erro
     }
     if (parse_sides(text, paper))
         return WEFT_OK;
-    return weft_fail(error, WEFT_BAD_USAGE, "--paper needs A4, letter or WxH with sides from %g to %g mm, not '%s'",
+    return weft_fail(error, WEFT_BAD_USAGE,
+                     "--paper needs A4, A3, A5, letter, legal, tabloid or WxH with sides from %g to %g mm, not '%s'",
                      smallest_side_mm, largest_side_mm, text);
 }
 

@@ -18,7 +18,8 @@ typedef struct weft_paper {
 /* What every printer leaves empty along the edges of a page, mm. */
 extern const double weft_paper_margin_mm;
 
-/* "A4", "letter" (in any case) or "WxH" in mm, each side from 40 to 2000. Errors: WEFT_BAD_USAGE naming --paper. */
+/* "A4", "A3", "A5", "letter", "legal", "tabloid" (in any case) or "WxH" in mm, each side from 40 to 2000. Errors:
+ * WEFT_BAD_USAGE naming --paper. */
 weft_code weft_paper_parse(const char *text, weft_paper *paper, weft_error *error);
 
 /* Sides of what can be printed on, mm. Pure. */

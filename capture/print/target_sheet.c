@@ -55,13 +55,25 @@ static bool overlap(weft_rectangle a, weft_rectangle b)
     return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
 }
 
+/* With the paper round it that its finder needs. */
+static weft_rectangle outline_of_marker(const sheet *s, int id)
+{
+    weft_rectangle r = weft_target_marker(&s->target, id);
+    double cell = (r.x1 - r.x0) / 6;
+    return (weft_rectangle){r.x0 - cell, r.y0 - cell, r.x1 + cell, r.y1 + cell};
+}
+
 static bool is_clear(const sheet *s, const weft_ruler *ruler)
 {
     weft_rectangle r = weft_ruler_outline(ruler);
     double width = weft_paper_printable_width(&s->settings->paper);
     double height = weft_paper_printable_height(&s->settings->paper), ring = ring_units * s->unit;
-    for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++) {
+    for (int ball = 0; s->settings->ball_mm > 0 && ball < WEFT_TARGET_BALL_COUNT; ball++) {
         if (overlap(r, outline_of_ball(s, ball)))
+            return false;
+    }
+    for (int id = 0; id < WEFT_SHEET_MARKER_COUNT; id++) {
+        if (overlap(r, outline_of_marker(s, id)))
             return false;
     }
     /* The nearest point to the middle of the ring. */
@@ -69,20 +81,44 @@ static bool is_clear(const sheet *s, const weft_ruler *ruler)
     return r.x0 >= -width / 2 && r.x1 <= width / 2 && r.y0 >= -height / 2 && r.y1 <= height / 2 && hypot(x, y) > ring;
 }
 
-/* One along the left edge of the sheet and one below it, as far as the page reaches. */
+/* Moves a bar along itself, from the middle of the page outwards, to the first place that is clear. */
+static bool slide(const sheet *s, weft_ruler *ruler)
+{
+    const double step_mm = 1;
+    double *along = ruler->upright ? &ruler->y : &ruler->x;
+    double reach = (ruler->upright ? weft_paper_printable_height(&s->settings->paper)
+                                   : weft_paper_printable_width(&s->settings->paper)) /
+                   2;
+    for (double away = 0; away <= reach; away += step_mm) {
+        for (int side = 1; side >= -1; side -= 2) {
+            *along = side * away;
+            if (is_clear(s, ruler))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* One along the left edge of the sheet, on it or beside it, and one below it, as far as the page reaches. */
 static bool place_rulers(sheet *s)
 {
     weft_rectangle r = weft_target_sheet(&s->target);
     const weft_paper *paper = &s->settings->paper;
-    double ball[2], below = 6 * s->scale;
+    double ball[2], below = 6 * s->scale, left = -weft_paper_printable_width(paper) / 2 + 0.5;
+    double bottom = -weft_paper_printable_height(paper) / 2 + 0.5, beside = 9 * s->scale;
     weft_target_ball(&s->target, 1, ball);
     double lowest = fmin(r.y0 - below, ball[1] - s->settings->ball_mm / 2 - hair_mm - 8 * s->scale);
     for (size_t i = 0; i < sizeof ruler_length / sizeof ruler_length[0]; i++) {
         double length = ruler_length[i];
-        s->ruler[0] =
-            (weft_ruler){0, fmax(lowest, -weft_paper_printable_height(paper) / 2 + 0.5), false, length, s->scale};
-        s->ruler[1] = (weft_ruler){fmax(r.x0, -weft_paper_printable_width(paper) / 2 + 0.5), 0, true, length, s->scale};
-        if (is_clear(s, &s->ruler[0]) && is_clear(s, &s->ruler[1]))
+        s->ruler[0] = (weft_ruler){0, fmax(lowest, bottom), false, length, s->scale};
+        s->ruler[1] = (weft_ruler){fmax(r.x0, left), 0, true, length, s->scale};
+        bool is_beside = slide(s, &s->ruler[1]);
+        if (!is_beside) {
+            s->ruler[1].x = fmax(r.x0 - beside, left);
+            is_beside = slide(s, &s->ruler[1]);
+        }
+        if (is_beside && slide(s, &s->ruler[0]) &&
+            !overlap(weft_ruler_outline(&s->ruler[0]), weft_ruler_outline(&s->ruler[1])))
             return true;
     }
     return false;
@@ -117,7 +153,7 @@ weft_code weft_target_sheet_check(weft_target_sheet_settings *settings, weft_err
     sheet s = sheet_of(settings);
     double ball = floor(10 * largest_ball(&s)) / 10;
     if (settings->ball_mm > ball)
-        return weft_fail(error, WEFT_BAD_USAGE, "--ball %g does not fit an opening of %g mm on %s: the largest is %g",
+        return weft_fail(error, WEFT_BAD_USAGE, "--balls %g does not fit an opening of %g mm on %s: the largest is %g",
                          settings->ball_mm, settings->opening_mm, settings->paper.name, ball);
     if (!place_rulers(&s))
         return weft_fail(error, WEFT_BAD_USAGE,
@@ -223,8 +259,13 @@ static void draw_title(const sheet *s, weft_print_page *page)
     double size = 6.5 * s->scale, top = weft_paper_printable_height(&s->settings->paper) / 2;
     double y = fmin(top - size, 84 * s->unit + size);
     weft_print_text(page, 0, y, size, WEFT_PRINT_CENTRED, 0, "Weft target");
-    snprintf(text, sizeof text, "opening %.4g mm  \u00b7  balls %g mm  \u00b7  pin %g mm  \u00b7  paper %s",
-             s->settings->opening_mm, s->settings->ball_mm, s->settings->pin_mm, s->settings->paper.name);
+    const weft_target_sheet_settings *settings = s->settings;
+    int length = snprintf(text, sizeof text, "opening %.4g mm", settings->opening_mm);
+    if (settings->ball_mm > 0)
+        length += snprintf(text + length, sizeof text - (size_t)length, "  \u00b7  balls %g mm", settings->ball_mm);
+    if (settings->pin_mm > 0)
+        length += snprintf(text + length, sizeof text - (size_t)length, "  \u00b7  pin %g mm", settings->pin_mm);
+    snprintf(text + length, sizeof text - (size_t)length, "  \u00b7  paper %s", settings->paper.name);
     weft_print_text(page, 0, y - 5.5 * s->scale, 3.1 * s->scale, WEFT_PRINT_CENTRED, 0, text);
     /* Beside the marker in the middle. */
     double x = -16 * s->unit, arrow = 68 * s->unit, wide = 3.2 * s->scale, high = 5.5 * s->scale;
@@ -234,20 +275,26 @@ static void draw_title(const sheet *s, weft_print_page *page)
 
 static void draw_lines(const sheet *s, weft_print_page *page, double x, const char *const *line)
 {
-    double size = 3 * s->scale, y = -60 * s->unit;
+    double size = 3 * s->scale, y = -57 * s->unit;
     for (int i = 0; line[i]; i++, y -= 1.42 * size)
         weft_print_text(page, x, y, size, WEFT_PRINT_LEFT, 0, line[i]);
 }
 
 static void draw_words(const sheet *s, weft_print_page *page)
 {
-    char measure[96], again[96], balls[96], pin[96];
-    double length = s->ruler[0].length_mm;
+    char measure[96], again[96], balls[96] = "", pin[96] = "";
+    double length = s->ruler[0].length_mm, ball_mm = s->settings->ball_mm, pin_mm = s->settings->pin_mm;
     snprintf(measure, sizeof measure, "2   Measure both bars with a ruler. If they are not %g mm, print", length);
     snprintf(again, sizeof again, "     again, or tell Weft: --opening %.4g \u00d7 measured / %g.",
              s->settings->opening_mm, length);
-    snprintf(balls, sizeof balls, "5   Stand a mirror ball of %g mm in each circle,", s->settings->ball_mm);
-    snprintf(pin, sizeof pin, "     and a pin, %g mm high, upright on its dot.", s->settings->pin_mm);
+    if (ball_mm > 0)
+        snprintf(balls, sizeof balls, "5   Stand a mirror ball of %g mm in each circle%s", ball_mm,
+                 pin_mm > 0 ? "," : ".");
+    if (pin_mm > 0)
+        snprintf(pin, sizeof pin, "%s %g mm high, upright on its dot.",
+                 ball_mm > 0 ? "     and a pin," : "5   Stand a pin,", pin_mm);
+    if (ball_mm <= 0 && pin_mm <= 0)
+        snprintf(balls, sizeof balls, "5   Tell weft photographs: --balls 0 --pin 0.");
     draw_lines(s, page, -56 * s->unit,
                (const char *const[]){"1   Print on matt, plain, white paper, at 100 %: no \u201cfit to page\u201d.",
                                      measure, again, "3   Cut out the square.", NULL});
@@ -260,9 +307,10 @@ static void draw_sheet(const sheet *s, weft_print_page *page)
 {
     draw_markers(page, &s->target);
     draw_opening(s, page);
-    for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++)
+    for (int ball = 0; s->settings->ball_mm > 0 && ball < WEFT_TARGET_BALL_COUNT; ball++)
         draw_ball(s, page, ball);
-    draw_pin(s, page);
+    if (s->settings->pin_mm > 0)
+        draw_pin(s, page);
     for (int i = 0; i < 2; i++)
         weft_ruler_draw(&s->ruler[i], page);
     draw_title(s, page);

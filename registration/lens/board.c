@@ -66,9 +66,11 @@ static bool parse_sizes(const char *text, const kind_of_board *kind, weft_board 
     return !*text && kind->fewest_sizes == 1;
 }
 
-/* A name of AprilTag may stand without that word. */
+/* OpenCV's own names begin with DICT_, and a name of AprilTag may stand without that word. */
 static bool set_dictionary(const char *name, weft_board *board)
 {
+    if (strncasecmp(name, "DICT_", 5) == 0)
+        name += 5;
     snprintf(board->dictionary, sizeof board->dictionary, "%s", name);
     if (!weft_marker_dictionary_size(board->dictionary))
         snprintf(board->dictionary, sizeof board->dictionary, "APRILTAG_%s", name);

@@ -25,7 +25,7 @@ typedef struct weft_board {
 /* "KIND:COLUMNSxROWS:SIZES_MM[:DICTIONARY]":
  *   plate:OPENING
  *   chessboard:COLUMNSxROWS:SQUARE               inner corners
- *   charuco:COLUMNSxROWS:SQUARE,MARKER[:DICTIONARY]    squares; 4X4_50 where it is not said
+ *   charuco:COLUMNSxROWS:SQUARE,MARKER[:DICTIONARY]    squares; 4X4_50 where it is not said; DICT_4X4_50 is the same
  *   aruco:COLUMNSxROWS:MARKER,GAP[:DICTIONARY]         markers; 4X4_50
  *   apriltag:COLUMNSxROWS:MARKER[,GAP][:DICTIONARY]    tags; 36h11; 1x1 is any one tag
  * Errors: WEFT_BAD_USAGE naming --board and what is wrong. */

@@ -326,6 +326,53 @@ static double worst_corner_px(const raster *picture, const weft_target *target, 
     return found == WEFT_SHEET_MARKER_COUNT ? worst : INFINITY;
 }
 
+/* Of any sheet, at any opening: the bars, the balls and what is written keep off the markers and the paper that their
+ * finder needs round them. */
+static void nothing_runs_into_a_marker(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *paper;
+        double opening_mm, ball_mm;
+    } sheet[] = {{"A4", 35, 20}, {"A4", 24, 10}, {"A4", 42, 0}, {"legal", 35, 20}, {"A5", 25, 8}};
+    for (size_t i = 0; i < sizeof sheet / sizeof sheet[0]; i++) {
+        weft_target_sheet_settings settings = settings_with(sheet[i].paper, sheet[i].opening_mm, sheet[i].ball_mm);
+        weft_target target = weft_target_printed(settings.opening_mm);
+        raster r = rasterised_pdf(&settings);
+        weft_pixel origin = dot_of(&settings, 0, 0);
+        long wrong = 0;
+        for (int id = WEFT_TARGET_MARKER_COUNT; id < WEFT_SHEET_MARKER_COUNT; id++) { /* those outside the plate */
+            weft_rectangle o = weft_target_marker(&target, id);
+            double cell = (o.x1 - o.x0) / 6;
+            for (double y = o.y0 - 0.9 * cell; y < o.y1 + 0.9 * cell; y += mm_per_dot) {
+                for (double x = o.x0 - 0.9 * cell; x < o.x1 + 0.9 * cell; x += mm_per_dot) {
+                    long at = lround(origin.y - y / mm_per_dot) * r.width + lround(origin.x + x / mm_per_dot);
+                    bool is_paper = x < o.x0 - 0.1 * cell || x > o.x1 + 0.1 * cell || y < o.y0 - 0.1 * cell ||
+                                    y > o.y1 + 0.1 * cell;
+                    wrong += is_paper && r.grey[at] < 200 &&
+                             weft_target_sheet_reflectance(&target, x, y) != target.ink_reflectance;
+                }
+            }
+        }
+        if (wrong > 0)
+            fail_msg("%ld dots too many on %s with an opening of %g mm", wrong, sheet[i].paper, sheet[i].opening_mm);
+        free(r.grey);
+    }
+}
+
+/* Who has neither balls nor a pin prints neither, and gets a larger opening on the same paper. */
+static void a_sheet_may_have_neither_balls_nor_pin(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_target_sheet_settings settings = {.opening_mm = 40};
+    expect_ok(weft_paper_parse("A3", &settings.paper, &error), &error);
+    expect_ok(weft_target_sheet_check(&settings, &error), &error);
+    print_sheet(&settings, "bare.pdf");
+    run("pdftotext bare.pdf bare.txt && ! grep -qi 'mirror ball\\|pin, \\|balls [0-9]* mm' bare.txt");
+    run("grep -q -e '--balls 0 --pin 0' bare.txt && grep -q 'opening 40 mm' bare.txt");
+}
+
 static void every_corner_is_found_from_75_degrees(void **state)
 {
     (void)state;
@@ -423,7 +470,7 @@ static void what_does_not_fit_is_refused_with_the_largest_that_does(void **state
     assert_refused("60x80", 0, 20, "too small");
     assert_refused("A4", 50, 45, "the largest is ");
     weft_paper paper;
-    const char *const bad[] = {"A5x", "200", "200x", "200x300x2", "-200x300", "nanx300", "1e9x1e9", ""};
+    const char *const bad[] = {"A5x", "A6", "200", "200x", "200x300x2", "-200x300", "nanx300", "1e9x1e9", ""};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_int_equal(weft_paper_parse(bad[i], &paper, NULL), WEFT_BAD_USAGE);
 }
@@ -439,6 +486,8 @@ int test_print(void)
         cmocka_unit_test(an_svg_has_the_same_size),
         cmocka_unit_test(nothing_but_the_drawing_is_inside_the_plate),
         cmocka_unit_test(both_bars_measure_100_mm),
+        cmocka_unit_test(nothing_runs_into_a_marker),
+        cmocka_unit_test(a_sheet_may_have_neither_balls_nor_pin),
         cmocka_unit_test(every_corner_is_found_from_75_degrees),
         cmocka_unit_test(the_shadow_of_the_pin_ends_on_the_sheet_and_not_on_the_sample),
         cmocka_unit_test(the_same_sheet_has_the_same_bytes_and_says_what_to_do),

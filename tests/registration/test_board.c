@@ -16,6 +16,10 @@ static void a_board_is_read_from_its_text(void **state)
     expect_ok(weft_board_parse("charuco:7x9:28,21:5X5_100", &b, &error), &error);
     assert_true(b.kind == WEFT_BOARD_CHARUCO && b.columns == 7 && b.rows == 9 && b.size_mm == 28 && b.second_mm == 21);
     assert_string_equal(b.dictionary, "5X5_100");
+    expect_ok(weft_board_parse("charuco:7x9:28,21:DICT_4X4_50", &b, &error), &error);
+    assert_string_equal(b.dictionary, "4X4_50");
+    expect_ok(weft_board_parse("apriltag:5x6:30,9:DICT_APRILTAG_36h11", &b, &error), &error);
+    assert_string_equal(b.dictionary, "APRILTAG_36h11");
     expect_ok(weft_board_parse("plate:48.5", &b, &error), &error);
     assert_true(b.kind == WEFT_BOARD_PLATE && b.size_mm == 48.5);
     expect_ok(weft_board_parse("apriltag:1x1:65", &b, &error), &error);
