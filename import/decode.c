@@ -169,5 +169,6 @@ weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path
     if (!(claim->kind == WEFT_CLAIM_NONE && decoding->options->linear))
         memcpy(decoded->words, claim->words, sizeof decoded->words);
     count_texels(decoding, &claim->space, samples, mask, decoded);
+    decoded->light = weft_photograph_light_of(samples, mask, decoding->width, decoding->height);
     return WEFT_OK;
 }

@@ -3,7 +3,7 @@
 #define WEFT_IMPORT_DECODE_H
 
 #include "base/picture/colour_claim.h"
-#include "import/collection.h"
+#include "import/plausibility.h"
 #include "weft/import.h"
 
 #include <stddef.h>
@@ -34,6 +34,7 @@ typedef struct weft_decoded {
     double sum;       /* of the others: of all channels */
     size_t outside;   /* texels that are not, and have colours outside sRGB */
     bool has_more;    /* the file holds more pictures than the one that was read */
+    weft_photograph_light light;
     weft_claim_kind claim;
     char words[200]; /* what the file says of its colours; "" where there is nothing to tell */
 } weft_decoded;

@@ -83,6 +83,7 @@ static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_e
     report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated - run->lacking)));
     WEFT_TRY(note_scale(report, error));
     WEFT_TRY(note_partial(run, error));
+    WEFT_TRY(weft_check_plausibility(run->collection, run->values, run->light, &report->notes, error));
     WEFT_TRY(weft_colour_messages_note(&run->messages, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, bonn, run->options, &run->decoding, report);
     if (!provenance)
@@ -106,8 +107,12 @@ static weft_code write_dataset(weft_import_run *run, const weft_bonn_file *bonn,
                                         .image_count = layout.image_count,
                                         .view_count = layout.view_count,
                                         .notes = run->report->notes};
+    run->values = layout.values;
     weft_code code = weft_dataset_writer_create(output, &layout, &run->writer, error);
     weft_dataset_layout_free(&layout);
+    size_t count = (size_t)run->collection->count;
+    if (code == WEFT_OK && !(run->light = calloc(count, sizeof *run->light)))
+        code = weft_fail_memory(error, "light", count * sizeof *run->light);
     if (code == WEFT_OK) {
         code = put_images(run, bonn);
         if (code != WEFT_OK && error)
@@ -188,6 +193,7 @@ weft_code weft_import(const char *source, const char *output, const weft_import_
     collection.notes = (weft_lines){0};
     weft_code code = import_collection(&run, bonn, output, error);
     weft_image_free(&run.first.image);
+    free(run.light);
     weft_collection_free(&collection);
     weft_bonn_file_close(&file);
     if (code != WEFT_OK)

@@ -6,6 +6,7 @@
 #include "import/far_photograph.h"
 
 #include <dirent.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,6 +73,24 @@ static weft_code add_rows(const char *folder, const weft_light_list *list, const
     return code;
 }
 
+/* Positions say how far the lamps are, of which nothing but the direction is used. */
+static weft_code note_positions(const weft_light_list *list, weft_collection *collection, weft_error *error)
+{
+    const double suspicious_mm = 100;
+    double nearest = INFINITY, farthest = 0;
+    for (int i = 0; i < list->count; i++) {
+        nearest = fmin(nearest, weft_length(list->row[i].light));
+        farthest = fmax(farthest, weft_length(list->row[i].light));
+    }
+    if (!list->positions)
+        return WEFT_OK;
+    return weft_lines_add(
+        &collection->notes, error,
+        "'%s': lamps stand %.4g to %.4g mm from the middle of the sample%s; they are taken as far, by "
+        "their directions alone",
+        list->path, nearest, farthest, nearest < suspicious_mm ? " (are these cm or m?)" : "");
+}
+
 static weft_code check_lights(const weft_light_list *list, weft_error *error)
 {
     for (int i = 0; i < list->count; i++) {
@@ -86,6 +105,7 @@ static weft_code add_listed(const char *folder, const weft_light_list *list, wef
 {
     weft_lines images;
     WEFT_TRY(check_lights(list, error));
+    WEFT_TRY(note_positions(list, collection, error));
     for (int i = 0; i < list->notes.count; i++)
         WEFT_TRY(weft_lines_add(&collection->notes, error, "%s", list->notes.line[i]));
     WEFT_TRY(weft_images_list(folder, &images, error));

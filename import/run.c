@@ -34,6 +34,7 @@ static void count_image(weft_import_run *run, int index, weft_code code, const w
         weft_colour_messages_add(&run->messages, index, photograph->name, decoded);
         run->saturated += decoded->saturated;
         run->outside += decoded->outside;
+        run->light[index] = decoded->light;
         run->lacking += decoded->missing;
         if (decoded->missing > 0 && (run->partial++ == 0 || index < run->first_partial))
             run->first_partial = index;

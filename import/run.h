@@ -44,13 +44,15 @@ typedef struct weft_import_run {
     weft_shown_photograph first; /* of index first_index; who puts it takes its pixels */
     int first_index;
     weft_dataset_writer *writer;
-    weft_code code; /* of the first failure; guarded, with everything below, by the critical section */
+    weft_values values; /* of the dataset */
+    weft_code code;     /* of the first failure; guarded, with everything below, by the critical section */
     weft_error error;
     long done;
     size_t saturated, outside, samples;
     size_t lacking;             /* samples that files lack though they show them */
     int partial, first_partial; /* such files, and the lowest index of one */
     double sum;
+    weft_photograph_light *light; /* [collection->count] */
     weft_colour_messages messages;
 } weft_import_run;
 

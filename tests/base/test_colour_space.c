@@ -215,6 +215,9 @@ static void what_a_file_says_is_weighed(void **state)
     claim = claim_of((weft_colour_tags){.profile = profile.bytes, .profile_size = profile.size, .gamma = 1});
     assert_non_null(strstr(claim.words, "'Display P3'"));
     assert_true(claim.space.curve[0].kind == WEFT_CURVE_SRGB);
+    claim =
+        claim_of((weft_colour_tags){.profile = profile.bytes, .profile_size = profile.size, .is_uncalibrated = true});
+    assert_true(claim.kind == WEFT_CLAIM_CLEAR && strstr(claim.words, "'Display P3'"));
     claim = claim_of((weft_colour_tags){.profile = profile.bytes, .profile_size = profile.size, .is_float = true});
     assert_true(claim.space.curve[0].kind == WEFT_CURVE_LINEAR);
     assert_false(weft_colour_space_has_srgb_primaries(&claim.space));
