@@ -94,6 +94,7 @@ static weft_code prune_material(prune_command *command, weft_player *player, wef
     const weft_progress progress = weft_command_progress(&command->common);
     weft_mesh mesh;
     WEFT_TRY(weft_mesh_open(settings->mesh, &mesh, error));
+    weft_settings_lay_plane(settings, (double)material->level[0].height / material->level[0].width, &mesh);
     const weft_prune_scene scene = {.mesh = &mesh,
                                     .path = command->path_file ? &command->path : NULL,
                                     .scene = settings->scene,

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double one_view_rad = WEFT_PI / 360;
+
 /* Memory that is short is an error; what is wrong with a file, its reader will say. */
 static weft_code of_reading(weft_code code)
 {
@@ -98,13 +100,14 @@ static weft_code in_studio(weft_settings *settings, weft_error *error)
 weft_code weft_first_look(weft_settings *settings, weft_error *error)
 {
     weft_measured measured;
+    bool known;
+    WEFT_TRY(find_measured(settings, &known, &measured, error));
+    settings->is_of_one_view = known && measured.view.angle_rad < one_view_rad;
     if (settings->source)
         return WEFT_OK;
     if (is_plane(settings) && !weft_settings_has(settings, "camera"))
         settings->scene.orbit =
             (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
-    bool known;
-    WEFT_TRY(find_measured(settings, &known, &measured, error));
     if (!known || holds_default(&measured))
         return in_studio(settings, error);
     if (!weft_settings_has(settings, "mesh"))

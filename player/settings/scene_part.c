@@ -18,7 +18,7 @@ typedef struct part {
     bool by_user;
     bool is_threads; /* a weave that is microcylinder cloth */
     char *path;
-    double width_mm, tiles[2];
+    double width_mm, proportion, tiles[2];
     bool knows_measured;
     weft_measured measured; /* of a material or a dataset */
     bool is_measured;
@@ -53,6 +53,7 @@ static weft_code read_material(part *p, weft_error *error)
 {
     WEFT_TRY(weft_material_read(p->path, &p->material, error));
     p->width_mm = p->material.level[0].width * p->material.texel_pitch_mm;
+    p->proportion = (double)p->material.level[0].height / p->material.level[0].width;
     WEFT_TRY(weft_measured_parse(p->material.metadata, &p->knows_measured, &p->measured, error));
     WEFT_TRY(weft_hold_out_read(p->material.metadata, &p->is_measured, &p->held_out, error));
     free(p->stage->metadata);
@@ -86,6 +87,7 @@ static weft_code read_samples(part *p, weft_dataset *dataset, weft_load *load, w
     p->measured = weft_measured_of(layout);
     p->knows_measured = true;
     p->width_mm = layout->width * layout->texel_pitch_mm;
+    p->proportion = (double)layout->height / layout->width;
     if (p->stage->metadata)
         WEFT_TRY(weft_dataset_fingerprint_compare(dataset, p->stage->metadata, difference, error));
     if (difference[0])
@@ -150,6 +152,7 @@ static weft_code show_mesh(part *p, weft_error *error)
     p->stage->mesh = p->mesh;
     p->stage->mesh.vertex = NULL;
     p->stage->mesh.index = NULL;
+    p->stage->plane_proportion = 1;
     return WEFT_OK;
 }
 
@@ -206,6 +209,26 @@ static void lay_out(weft_scene_stage *stage)
         weft_settings_repeat(settings, &stage->mesh, width_mm, is_measured ? width_mm : WEFT_SETTINGS_SWATCH_MM);
 }
 
+/* The plane shows the material once, whatever its sides. */
+static weft_code lay_plane(weft_scene_stage *stage, weft_error *error)
+{
+    const weft_settings *settings = stage->settings;
+    const double *measured = stage->proportion;
+    double proportion = measured[WEFT_SLOT_MATERIAL] > 0 ? measured[WEFT_SLOT_MATERIAL] : measured[WEFT_SLOT_DATASET];
+    weft_mesh plane;
+    bool is_shown = stage->plane_proportion > 0 && strcmp(settings->mesh, "plane") == 0;
+    if (!is_shown || !(proportion > 0) || stage->plane_proportion == proportion)
+        return WEFT_OK;
+    WEFT_TRY(weft_mesh_plane(&plane, error));
+    weft_settings_lay_plane(settings, proportion, &plane);
+    weft_code code = weft_player_set_mesh(stage->player, &plane, error);
+    if (code == WEFT_OK)
+        weft_first_fit(stage->settings, &plane);
+    weft_mesh_free(&plane);
+    stage->plane_proportion = proportion;
+    return code;
+}
+
 static void note_measured(const part *p)
 {
     weft_settings *settings = p->stage->settings;
@@ -226,6 +249,7 @@ static weft_code show_part(void *data, weft_error *error)
     *path = p->path;
     p->path = NULL;
     stage->width_mm[p->slot] = p->width_mm;
+    stage->proportion[p->slot] = p->proportion;
     note_measured(p);
     if (p->slot == WEFT_SLOT_MATERIAL) {
         stage->is_measured = p->is_measured;
@@ -235,7 +259,7 @@ static weft_code show_part(void *data, weft_error *error)
     stage->by_user = p->by_user;
     memcpy(stage->note, p->note, sizeof stage->note);
     lay_out(stage);
-    return WEFT_OK;
+    return lay_plane(stage, error);
 }
 
 static void release_part(void *data)

@@ -24,17 +24,19 @@ typedef struct weft_woven {
 
 /* What parts change as they are read and shown. */
 typedef struct weft_scene_stage {
-    weft_settings *settings;          /* name what is shown */
-    weft_player *player;              /* must be set before a dataset is started, and before anything is shown */
-    char *metadata;                   /* of the material read last; the reader's alone */
-    double width_mm[WEFT_SLOT_COUNT]; /* of a measured model; 0: unknown */
-    bool is_measured;                 /* the material that is shown, on directions that were held out */
-    weft_hold_out held_out;           /* of it */
-    weft_woven woven;                 /* of the weave that is shown */
-    weft_mesh mesh;                   /* that is shown, without its vertices */
-    bool by_user;                     /* of the part shown last: it was asked for while playing */
-    weft_scene_slot slot;             /* of the part shown last */
-    char note[WEFT_MESSAGE_SIZE];     /* what the user should know of it */
+    weft_settings *settings;            /* name what is shown */
+    weft_player *player;                /* must be set before a dataset is started, and before anything is shown */
+    char *metadata;                     /* of the material read last; the reader's alone */
+    double width_mm[WEFT_SLOT_COUNT];   /* of a measured model; 0: unknown */
+    bool is_measured;                   /* the material that is shown, on directions that were held out */
+    weft_hold_out held_out;             /* of it */
+    weft_woven woven;                   /* of the weave that is shown */
+    double proportion[WEFT_SLOT_COUNT]; /* height over width of a measured model; 0: unknown */
+    weft_mesh mesh;                     /* that is shown, without its vertices */
+    double plane_proportion;            /* of it, where it is the plane */
+    bool by_user;                       /* of the part shown last: it was asked for while playing */
+    weft_scene_slot slot;               /* of the part shown last */
+    char note[WEFT_MESSAGE_SIZE];       /* what the user should know of it */
 } weft_scene_stage;
 
 void weft_scene_stage_free(weft_scene_stage *stage);

@@ -241,6 +241,16 @@ double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh
     return mesh->coordinate_length * size_mm / (mesh->size * material_width_mm);
 }
 
+void weft_settings_lay_plane(const weft_settings *settings, double proportion, weft_mesh *mesh)
+{
+    if (strcmp(settings->mesh, "plane") != 0 || !settings->real_size || settings->mesh_size_mm > 0)
+        return;
+    for (int i = 0; i < mesh->vertex_count; i++) {
+        mesh->vertex[i].position[1] *= (float)proportion;
+        mesh->vertex[i].coordinate[1] *= (float)proportion;
+    }
+}
+
 /* ---- Pictures ---- */
 
 bool weft_settings_is_picture(const char *path)

@@ -22,10 +22,11 @@ typedef struct weft_settings {
     int samples; /* samples x samples frames for a picture */
     weft_scene scene;
     /* What the text does not have: how the settings came about */
-    const char *source; /* the picture or text that they began from, or NULL */
-    uint64_t given;     /* the options that were given, a bit for each setting of the schema */
-    bool split;         /* the modes were asked for as "split" */
-    bool has_lights;    /* lights were asked for, or their absence */
+    const char *source;  /* the picture or text that they began from, or NULL */
+    uint64_t given;      /* the options that were given, a bit for each setting of the schema */
+    bool split;          /* the modes were asked for as "split" */
+    bool has_lights;     /* lights were asked for, or their absence */
+    bool is_of_one_view; /* what is shown first was photographed from one direction alone; the first look tells */
     /* What the files that are shown were measured from, where they say it; the loader fills it in */
     bool knows_measured[WEFT_MODE_COUNT];
     weft_measured measured[WEFT_MODE_COUNT];
@@ -87,6 +88,10 @@ weft_code weft_settings_check_files(const weft_settings *settings, const char *s
  * none. Pure. */
 double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm,
                             double plane_mm);
+
+/* Gives a plane the sides of a material, `proportion` times as high as wide, where it is the mesh of the settings and
+ * shows the material once: at its real size, and no other size is given. Other meshes stay. */
+void weft_settings_lay_plane(const weft_settings *settings, double proportion, weft_mesh *mesh);
 
 /* Whether a picture can be written under this name: .png, .exr, .tif. Pure. */
 bool weft_settings_is_picture(const char *path);

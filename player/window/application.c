@@ -354,6 +354,9 @@ weft_code weft_application_run(weft_application *a, weft_error *error)
     const weft_scene *scene = &a->setup.settings->scene;
     a->interaction = (weft_interaction){.scene = *scene, .start = *scene, .changed = true, .shows_panel = true};
     a->interaction.before = scene->pane[0];
+    a->interaction.drag_moves_light = a->interaction.points_light = a->setup.settings->is_of_one_view;
+    if (a->interaction.points_light)
+        weft_application_show_message(a, false, "one view: drags move the light to the pointer (L: turn the cloth)");
     a->stepped_s = weft_now_s();
     find_modes(a);
     long limit = a->setup.frame_limit;

@@ -5,7 +5,8 @@
 
 static const double lowest_light_rad = 110 * WEFT_PI / 180;
 static const double zoom_step = 0.9;
-static const double divider_reach = 8; /* pixels */
+static const double ball_share = 0.9, rim_rad = 85 * WEFT_PI / 180; /* of the map of lights */
+static const double divider_reach = 8;                              /* pixels */
 
 /* ---- Mouse ---- */
 
@@ -24,7 +25,30 @@ static weft_drag drag_of(const weft_interaction *i, int button, int modifiers)
         return WEFT_DRAG_NONE;
     if (is_on_divider(i, i->x))
         return WEFT_DRAG_DIVIDER;
-    return modifiers & GLFW_MOD_SHIFT || i->drag_moves_light ? WEFT_DRAG_LIGHT : WEFT_DRAG_ORBIT;
+    if (modifiers & GLFW_MOD_SHIFT || !i->drag_moves_light)
+        return modifiers & GLFW_MOD_SHIFT ? WEFT_DRAG_LIGHT : WEFT_DRAG_ORBIT;
+    return i->points_light && i->scene.light_count > 0 ? WEFT_DRAG_POINT : WEFT_DRAG_LIGHT;
+}
+
+/* theta is limited to what a light may have. */
+static void turn_light(weft_angles *light, double phi_rad, double theta_rad)
+{
+    light->phi_rad = fmod(light->phi_rad + phi_rad, 2 * WEFT_PI);
+    light->theta_rad = weft_clamp(light->theta_rad + theta_rad, 0, lowest_light_rad);
+}
+
+/* The key light stands where the pointer is on a ball that nearly fills the picture, at its rim where it is beyond. */
+static void point_light(weft_interaction *i)
+{
+    double radius = ball_share * 0.5 * (i->width < i->height ? i->width : i->height);
+    double right = (i->x - 0.5 * i->width) / radius, up = (0.5 * i->height - i->y) / radius;
+    double shrink = fmin(1, sin(rim_rad) / fmax(hypot(right, up), 1e-9));
+    weft_orbit_axes axes = weft_orbit_axes_of(&i->scene.orbit);
+    weft_vec3 light = weft_add(weft_scale(axes.right, shrink * right), weft_scale(axes.up, shrink * up));
+    light = weft_add(light, weft_scale(axes.backward, sqrt(1 - weft_dot(light, light))));
+    i->scene.light[0].direction = weft_angles_of_direction(light);
+    turn_light(&i->scene.light[0].direction, 0, 0);
+    i->changed = true;
 }
 
 void weft_interaction_press(weft_interaction *i, int button, bool pressed, int modifiers, double x, double y)
@@ -32,6 +56,8 @@ void weft_interaction_press(weft_interaction *i, int button, bool pressed, int m
     i->x = x;
     i->y = y;
     i->drag = pressed ? drag_of(i, button, modifiers) : WEFT_DRAG_NONE;
+    if (i->drag == WEFT_DRAG_POINT)
+        point_light(i);
 }
 
 /* What is under the pointer stays there, for what lies at the distance of the centre. */
@@ -41,13 +67,6 @@ static void pan(weft_interaction *i, double x, double y)
     int smaller = i->width < i->height ? i->width : i->height;
     double radii = smaller > 0 ? 2 * weft_orbit_slope() * orbit->distance / smaller : 0;
     weft_orbit_pan(orbit, -radii * x, radii * y);
-}
-
-/* theta is limited to what a light may have. */
-static void turn_light(weft_angles *light, double phi_rad, double theta_rad)
-{
-    light->phi_rad = fmod(light->phi_rad + phi_rad, 2 * WEFT_PI);
-    light->theta_rad = weft_clamp(light->theta_rad + theta_rad, 0, lowest_light_rad);
 }
 
 /* The key light, or the environment where that is the only one. */
@@ -90,6 +109,8 @@ void weft_interaction_move(weft_interaction *i, double x, double y)
     }
     i->x = x;
     i->y = y;
+    if (i->drag == WEFT_DRAG_POINT)
+        point_light(i);
     i->changed |= i->drag != WEFT_DRAG_NONE;
 }
 

@@ -4,7 +4,14 @@
 
 #include "player/scene/scene.h"
 
-typedef enum weft_drag { WEFT_DRAG_NONE, WEFT_DRAG_ORBIT, WEFT_DRAG_PAN, WEFT_DRAG_LIGHT, WEFT_DRAG_DIVIDER } weft_drag;
+typedef enum weft_drag {
+    WEFT_DRAG_NONE,
+    WEFT_DRAG_ORBIT,
+    WEFT_DRAG_PAN,
+    WEFT_DRAG_LIGHT,
+    WEFT_DRAG_POINT, /* the light goes where the pointer is */
+    WEFT_DRAG_DIVIDER
+} weft_drag;
 
 typedef struct weft_interaction {
     weft_scene scene, start; /* now, and as it was at first */
@@ -12,6 +19,8 @@ typedef struct weft_interaction {
     int width, height; /* of the picture, pixels */
     weft_drag drag;
     bool drag_moves_light; /* also with the left button and the arrow keys */
+    bool points_light;     /* the left button then moves it to the pointer: the picture is a map of the hemisphere that
+                              the camera looks into */
     bool turns;            /* by itself */
     double x, y;           /* of the pointer at the last event, pixels from the picture's upper left corner */
     weft_mode before;      /* shown before the last flip */

@@ -112,4 +112,30 @@ printf '10,0,0,0\n40,0,0,0\n40,120,0,0\n40,240,0,0\n' | photograph above "30%"
 expect_says "beyond the photographs: every view but one, [0-9]* % of the lit cloth is lit" render above.weft --size 60x40 --samples 1 -o above.png
 printf '10,0,0,0\n10,0,40,0\n10,0,40,120\n10,0,40,240\n' | photograph below "30%"
 expect_says "beyond the photographs: [0-9]* % of the lit cloth is seen, every light but one" render below.weft --size 60x40 --samples 1 -o below.png
+
+# A wide picture from one place under four lamps, red above green: the plane shows it once, twice as wide as high.
+mkdir wide-lamps
+printf '4\n' >wide-lamps/lamps.lp
+convert -size 32x8 "xc:rgb(200,40,40)" "xc:rgb(40,200,40)" -append -depth 8 -type TrueColor half.png
+for light in "0.1 0 0.99" "0.6 0 0.8" "0 0.6 0.8" "-0.6 0 0.8"; do
+    cp half.png "wide-lamps/$(echo "$light" | tr ' ' _).png"
+    echo "$(echo "$light" | tr ' ' _).png $light" >>wide-lamps/lamps.lp
+done
+expect_ok import wide-lamps -o lamps.btf.h5 --values reflectance
+expect_ok compress lamps.btf.h5 -o lamps.weft
+
+# A line through the middle of a picture, as run lengths of r, g and - (neither): GEOMETRY.
+runs() {
+    convert lamps.png -crop "$1" +repage -depth 8 rgb:- | od -An -v -tu1 -w3 |
+        awk '{print ($1 > $2 + 40 ? "r" : $2 > $1 + 40 ? "g" : "-")}' | uniq -c | awk '{printf "%s%s ", $2, $1}'
+}
+for source in lamps.weft lamps.btf.h5; do
+    expect_ok render "$source" --size 120x80 --samples 1 -o lamps.png
+    expect_setting lamps.png mesh plane
+    column=$(runs 1x80+60+0) row=$(runs 120x1+0+30)
+    echo "$column" | grep -qx -- "-[0-9]* r[0-9]* g[0-9]* -[0-9]* " || fail "$source is not shown once from above: $column"
+    echo "$row" | grep -qx -- "-[0-9]* r[0-9]* -[0-9]* " || fail "$source is not shown once across: $row"
+    high=$(echo "$column" | sed 's/.*r\([0-9]*\) g\([0-9]*\).*/\1 + \2/') wide=$(echo "$row" | sed 's/.*r\([0-9]*\).*/\1/')
+    [ $((2 * ($high) - $wide)) -le 3 ] && [ $((2 * ($high) - $wide)) -ge -3 ] || fail "$source: $wide wide and $high high"
+done
 echo "first_look.sh: $passed checks"

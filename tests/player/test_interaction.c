@@ -50,6 +50,50 @@ static void a_right_or_shifted_drag_moves_only_the_light(void **state)
     assert_memory_equal(&orbit, &i.scene.orbit, sizeof orbit);
 }
 
+static void expect_light(const weft_interaction *i, double x, double y, double z)
+{
+    weft_vec3 light = weft_direction_of_angles(i->scene.light[0].direction);
+    assert_float_equal(light.x, x, 1e-6);
+    assert_float_equal(light.y, y, 1e-6);
+    assert_float_equal(light.z, z, 1e-6);
+}
+
+/* Seen from above the picture is a map of the hemisphere, of which 0.9 of the smaller side is the ball. */
+static void the_light_of_one_view_goes_where_the_pointer_is(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    i.drag_moves_light = i.points_light = true;
+    i.scene.orbit = (weft_orbit){.azimuth_rad = -WEFT_PI / 2, .elevation_rad = WEFT_PI / 2, .distance = 3};
+    weft_orbit orbit = i.scene.orbit;
+    weft_interaction_press(&i, GLFW_MOUSE_BUTTON_LEFT, true, 0, 400, 200);
+    expect_light(&i, 0, 0, 1);
+    assert_true(i.changed);
+    weft_interaction_move(&i, 400 + 180 * 0.6, 200 - 180 * 0.48);
+    expect_light(&i, 0.6, 0.48, 0.64);
+    weft_interaction_move(&i, 10, 200);
+    expect_light(&i, -sin(85 * WEFT_PI / 180), 0, cos(85 * WEFT_PI / 180));
+    weft_interaction_press(&i, GLFW_MOUSE_BUTTON_LEFT, false, 0, 10, 200);
+    weft_interaction_move(&i, 400, 200);
+    expect_light(&i, -sin(85 * WEFT_PI / 180), 0, cos(85 * WEFT_PI / 180));
+    assert_memory_equal(&orbit, &i.scene.orbit, sizeof orbit);
+    weft_keys_press(&i, GLFW_KEY_L, 0, false);
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, 0, 100, 0);
+    expect_light(&i, -sin(85 * WEFT_PI / 180), 0, cos(85 * WEFT_PI / 180));
+    assert_true(i.scene.orbit.azimuth_rad != orbit.azimuth_rad);
+}
+
+static void without_a_light_the_environment_turns_instead_of_going_to_the_pointer(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    i.drag_moves_light = i.points_light = true;
+    i.scene.light_count = 0;
+    double turn_rad = i.scene.environment_turn_rad;
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, 0, 100, 0);
+    assert_float_equal(i.scene.environment_turn_rad, turn_rad + WEFT_PI / 4, 1e-9);
+}
+
 static void a_move_without_a_button_changes_nothing(void **state)
 {
     (void)state;
@@ -357,6 +401,8 @@ int test_interaction(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_left_drag_across_half_the_window_turns_half_way_round),
         cmocka_unit_test(a_right_or_shifted_drag_moves_only_the_light),
+        cmocka_unit_test(the_light_of_one_view_goes_where_the_pointer_is),
+        cmocka_unit_test(without_a_light_the_environment_turns_instead_of_going_to_the_pointer),
         cmocka_unit_test(a_move_without_a_button_changes_nothing),
         cmocka_unit_test(camera_and_light_stop_at_their_ends),
         cmocka_unit_test(mode_keys_show_what_is_there_and_ignore_what_is_not),

@@ -62,6 +62,7 @@ static int make_files(void **state)
                                       "f 1/1 2/2 3/3 4/4\n");
     write_text("scene_load/bad.obj", "v 0 0 0\nf 1 2 3\n");
     stage_dataset("scene_load/a.btf.h5", 8, 7, 7, WEFT_REFLECTANCE_COSINE, false);
+    stage_dataset("scene_load/one_view.btf.h5", 8, 1, 7, WEFT_REFLECTANCE_COSINE, false);
     return 0;
 }
 
@@ -418,10 +419,22 @@ static void a_weave_has_its_own_size_until_it_lies_on_a_material(void **state)
     weft_settings_free(&settings);
 }
 
+static void what_has_one_view_is_known_before_it_is_read(void **state)
+{
+    (void)state;
+    static const char *const path[] = {"scene_load/a.btf.h5", "scene_load/one_view.btf.h5"};
+    for (int i = 0; i < 2; i++) {
+        fixture *f = open_scene(NULL, path[i]);
+        assert_int_equal(f->settings.is_of_one_view, i == 1);
+        close_scene(f);
+    }
+}
+
 int test_scene_loader(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_named_is_shown_and_named),
+        cmocka_unit_test(what_has_one_view_is_known_before_it_is_read),
         cmocka_unit_test(weaves_and_microcylinders_replace_each_other),
         cmocka_unit_test(a_fitted_weave_is_laid_as_its_file_says),
         cmocka_unit_test(samples_are_kept_in_the_format_that_the_settings_name),

@@ -281,6 +281,29 @@ static void a_cloth_has_its_real_size(void **state)
     weft_settings_free(&s);
 }
 
+/* Two as high as wide, of which the plane shows one; any other mesh, or size, is as it was. */
+static void the_plane_has_the_sides_of_its_material(void **state)
+{
+    (void)state;
+    weft_error error = none;
+    for (int as = 0; as < 4; as++) {
+        weft_settings s = parsed("{\"version\": 1, \"files\": {\"mesh\": \"plane\"}}", "shot.png");
+        weft_mesh mesh;
+        assert_int_equal(weft_mesh_open("plane", &mesh, &error), WEFT_OK);
+        s.mesh_size_mm = as == 1 ? 100 : 0;
+        s.real_size = as != 2;
+        if (as == 3)
+            strcpy(s.mesh, "quad");
+        weft_settings_lay_plane(&s, 2, &mesh);
+        double height = as == 0 ? 2 : 1;
+        assert_float_equal(mesh.vertex[3].position[1] - mesh.vertex[0].position[1], height, 0);
+        assert_float_equal(mesh.vertex[3].coordinate[1] - mesh.vertex[0].coordinate[1], height, 0);
+        assert_float_equal(mesh.vertex[3].position[0] - mesh.vertex[0].position[0], 1, 0);
+        weft_mesh_free(&mesh);
+        weft_settings_free(&s);
+    }
+}
+
 int test_settings(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +318,7 @@ int test_settings(void)
         cmocka_unit_test(a_mesh_in_a_file_called_drape_is_not_the_drape),
         cmocka_unit_test(a_missing_file_is_named_with_its_picture),
         cmocka_unit_test(a_cloth_has_its_real_size),
+        cmocka_unit_test(the_plane_has_the_sides_of_its_material),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }
