@@ -12,7 +12,7 @@ extern "C" {
 
 /* A number that the file does not say is 0. */
 typedef struct weft_exif {
-    int width, height; /* pixels as stored, whatever the orientation */
+    int width, height; /* pixels as they are read, before the orientation turns them */
     bool is_float;     /* half or float samples; else integers */
     bool is_linear;    /* that, or camera raw; of others nothing is known */
     int bits;          /* of a sample */

@@ -30,8 +30,10 @@ void weft_exif_of(OIIO::ImageInput &input, const char *path, weft_exif *exif)
 {
     const OIIO::ImageSpec &spec = input.spec();
     *exif = {};
-    exif->width = spec.width;
-    exif->height = spec.height;
+    /* OpenEXR shows another rectangle than it stores. */
+    bool is_exr = strcmp(input.format_name(), "openexr") == 0;
+    exif->width = is_exr ? spec.full_width : spec.width;
+    exif->height = is_exr ? spec.full_height : spec.height;
     exif->is_float = spec.format.is_floating_point();
     exif->is_linear = exif->is_float || strcmp(input.format_name(), "raw") == 0;
     exif->bits = spec.get_int_attribute("oiio:BitsPerSample", (int)(8 * spec.format.size()));

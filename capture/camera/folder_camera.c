@@ -18,7 +18,8 @@ typedef struct folder_camera {
     weft_camera_settings settings;
     weft_clock clock;
     int watch;
-    char original[PATH_MAX]; /* of the last frame */
+    char original[PATH_MAX];  /* of the last frame */
+    char taken[NAME_MAX + 1]; /* its name; empty: there was none */
 } folder_camera;
 
 /* ---- Events ---- */
@@ -65,15 +66,27 @@ static weft_code take(taking *t, const char *path)
     return code;
 }
 
+/* Cameras that write raw and JPEG write one of them late: it is of the last frame, not of this one. The same name again
+ * is another photograph, for their numbers begin anew. */
+static bool is_of_last_frame(const char *file, const char *taken)
+{
+    const char *dot = strrchr(file, '.'), *taken_dot = strrchr(taken, '.');
+    size_t length = dot ? (size_t)(dot - file) : strlen(file);
+    return taken_dot && (size_t)(taken_dot - taken) == length && strncmp(file, taken, length) == 0 &&
+           strcmp(file, taken) != 0;
+}
+
 static bool try_file(void *context, const char *file)
 {
     taking *t = context;
     const weft_camera_settings *settings = &t->camera->settings;
     char *path = t->camera->original;
-    if (fnmatch(settings->pattern, file, FNM_CASEFOLD | FNM_PERIOD) != 0)
+    if (fnmatch(settings->pattern, file, FNM_CASEFOLD | FNM_PERIOD) != 0 || is_of_last_frame(file, t->camera->taken))
         return false;
     snprintf(path, PATH_MAX, "%s/%s", settings->device, file);
     t->code = take(t, path);
+    if (t->code == WEFT_OK)
+        snprintf(t->camera->taken, sizeof t->camera->taken, "%s", file);
     return t->code == WEFT_OK;
 }
 

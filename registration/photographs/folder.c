@@ -97,6 +97,33 @@ static weft_code name_photographs(const char *folder, const weft_lines *names, w
     return WEFT_OK;
 }
 
+/* Lenses without contacts write no aperture. What no photograph states is taken as the same in all. */
+static weft_code complete_exposures(weft_photograph_set *set, weft_error *error)
+{
+    int used = 0, timed = 0, with_aperture = 0, with_iso = 0;
+    for (int i = 0; i < set->count; i++) {
+        const weft_photographs_photograph *p = &set->photograph[i];
+        if (!weft_photographs_used(p))
+            continue;
+        used++;
+        timed += p->exif.exposure_s > 0;
+        with_aperture += p->exif.f_number > 0;
+        with_iso += p->exif.iso > 0;
+    }
+    if (timed < used || (with_aperture > 0 && with_iso > 0))
+        return WEFT_OK;
+    for (int i = 0; i < set->count; i++) {
+        weft_exif *exif = &set->photograph[i].exif;
+        exif->f_number = with_aperture > 0 ? exif->f_number : 1;
+        exif->iso = with_iso > 0 ? exif->iso : 100;
+    }
+    return weft_lines_add(&set->notes, error, "no photograph states its %s: %s taken as the same in all",
+                          with_aperture > 0 ? "sensitivity"
+                          : with_iso > 0    ? "aperture"
+                                            : "aperture and sensitivity",
+                          with_aperture > 0 || with_iso > 0 ? "it is" : "both are");
+}
+
 weft_code weft_photographs_list(const char *folder, weft_photograph_set *set, weft_error *error)
 {
     weft_lines names;
@@ -113,7 +140,7 @@ weft_code weft_photographs_list(const char *folder, weft_photograph_set *set, we
                          "none of the %d images in '%s' can be read: %s; save them as JPEG, TIFF or DNG", set->count,
                          folder, set->photograph[0].remark);
     leave_out_other_sizes(set, common);
-    return WEFT_OK;
+    return complete_exposures(set, error);
 }
 
 /* ---- What the files say of their colours ---- */

@@ -170,6 +170,48 @@ static void a_file_is_waited_for_until_it_is_whole(void **state)
     assert_string_equal(original, "incoming/IMG_2.tif");
 }
 
+/* The camera writes both kinds, and the second one half a second after the next release. */
+static bool drop_the_second_kind_late(int step)
+{
+    static int shot;
+    static const char *const file[] = {"IMG_9999.tif", "IMG_9999.jpg", "IMG_0001.tif", "IMG_0001.jpg", "IMG_0001.tif"};
+    char path[64];
+    (void)step;
+    snprintf(path, sizeof path, "incoming/%s", file[shot]);
+    shot++;
+    write_picture(path, WIDTH * BIN, HEIGHT * BIN, 0.125 * shot);
+    return shot == 2 || shot == 4;
+}
+
+static void raw_and_jpeg_are_one_shot_and_names_may_roll_over(void **state)
+{
+    (void)state;
+    other_program program = {.work = drop_the_second_kind_late, .step = -1};
+    const weft_clock clock = {&program, now_of_program, wait_for_program};
+    const weft_camera_settings settings = {.device = "incoming",
+                                           .pattern = "IMG*",
+                                           .timeout_s = 10,
+                                           .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT},
+                                           .shutter = {&program, release},
+                                           .clock = &clock};
+    static const struct {
+        const char *name;
+        double exposure_s;
+    } wanted[] = {{"incoming/IMG_9999.tif", 0.125}, {"incoming/IMG_0001.tif", 0.375}, {"incoming/IMG_0001.tif", 0.625}};
+    weft_rig_camera rig;
+    assert_int_equal(weft_folder_camera_open(&settings, &rig, NULL), WEFT_OK);
+    for (int i = 0; i < 3; i++) {
+        uint16_t samples[VALUES];
+        double read_back_s;
+        weft_error error = {0};
+        if (rig.expose(rig.device, 0, 0.25, samples, &read_back_s, &error) != WEFT_OK)
+            fail_msg("%s", error.message);
+        assert_string_equal(rig.original(rig.device), wanted[i].name);
+        assert_float_equal(read_back_s, wanted[i].exposure_s, 1e-6);
+    }
+    rig.close(rig.device);
+}
+
 static bool move_in(int step)
 {
     (void)step;
@@ -323,6 +365,7 @@ int test_cameras(void)
         cmocka_unit_test(the_next_file_is_the_frame_and_says_its_exposure),
         cmocka_unit_test(a_file_is_waited_for_until_it_is_whole),
         cmocka_unit_test(what_cannot_be_a_frame_is_named_when_the_time_is_up),
+        cmocka_unit_test(raw_and_jpeg_are_one_shot_and_names_may_roll_over),
         cmocka_unit_test(a_folder_that_is_not_there_is_named),
         cmocka_unit_test(nothing_is_released_after_a_stop),
         cmocka_unit_test(frames_of_a_series_come_in_order_until_it_ends),
