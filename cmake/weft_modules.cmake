@@ -29,7 +29,7 @@ weft_embed_text(shader_source shaders weft_glsl_ ${shaders})
 weft_module(base
     FOLDERS base base/numeric)
 weft_module(base/picture
-    EXCEPT colour_tags_bridge.cpp exif_bridge.cpp exr_bridge.cpp image_bridge.cpp open_bridge.cpp tiff_sensitivity.c
+    EXCEPT colour_tags_bridge.cpp exif_bridge.cpp exr_bridge.cpp image_bridge.cpp open_bridge.cpp raw_bridge.cpp tiff_sensitivity.c
     GENERATED ${font_source}
     USES base)
 weft_module(base/text
@@ -141,7 +141,7 @@ set_source_files_properties(${CMAKE_SOURCE_DIR}/player/window/space_mouse.c PROP
 weft_libraries()
 
 weft_plugin(weft_image_library base/picture
-    SOURCES colour_tags_bridge.cpp container.c exif_bridge.cpp exr_bridge.cpp image_bridge.cpp image.c open_bridge.cpp tiff_sensitivity.c USES PkgConfig::OIIO)
+    SOURCES colour_tags_bridge.cpp container.c exif_bridge.cpp exr_bridge.cpp image_bridge.cpp image.c open_bridge.cpp raw_bridge.cpp tiff_sensitivity.c USES PkgConfig::OIIO)
 # Its headers take longer to read than all that the five bridges do with them.
 target_precompile_headers(weft_image_library PRIVATE $<$<COMPILE_LANGUAGE:CXX>:<OpenImageIO/imageio.h$<ANGLE-R>>)
 weft_plugin(weft_video_library capture/camera SOURCES video_bridge.cpp USES opencv_core opencv_videoio)

@@ -126,6 +126,8 @@ static weft_code read_png(source *s, weft_colour_tags *tags)
 
 enum {
     SUBFILE_TYPE = 254,
+    IMAGE_WIDTH = 256,
+    IMAGE_LENGTH = 257,
     PHOTOMETRIC = 262,
     STRIP_OFFSETS = 273,
     STRIP_COUNTS = 279,
@@ -135,7 +137,8 @@ enum {
     DNG_VERSION = 50706,
     COLOUR_FILTERS = 32803, /* photometric */
     LINEAR_RAW = 34892,
-    MOST_DIRECTORIES = 32
+    MOST_DIRECTORIES = 32,
+    MOST_PIXELS_IN_BYTE = 32 /* of a sensor: its noise cannot be packed */
 };
 
 /* Values of an entry: `count` numbers of `bytes` each. */
@@ -147,7 +150,7 @@ typedef struct values {
 /* Of a directory. */
 typedef struct directory {
     bool is_reduced;
-    uint64_t photometric;
+    uint64_t photometric, width, height;
     bool is_dng;
     values offsets, counts, below;
     uint64_t next;
@@ -193,13 +196,15 @@ static weft_code read_entry(const tiff *t, uint64_t place, directory *d)
         d->below = v;
     else if (tag == DNG_VERSION)
         d->is_dng = true;
-    if (tag != SUBFILE_TYPE && tag != PHOTOMETRIC)
+    if (tag != SUBFILE_TYPE && tag != PHOTOMETRIC && tag != IMAGE_WIDTH && tag != IMAGE_LENGTH)
         return WEFT_OK;
     WEFT_TRY(value_at(t, &v, 0, &value));
     if (tag == PHOTOMETRIC)
         d->photometric = value;
-    else
+    else if (tag == SUBFILE_TYPE)
         d->is_reduced = value & 1;
+    else
+        *(tag == IMAGE_WIDTH ? &d->width : &d->height) = value;
     return WEFT_OK;
 }
 
@@ -226,9 +231,19 @@ static bool is_unsaid(uint64_t offset)
     return offset == UINT32_MAX;
 }
 
+/* Whether the middle of a block is one byte over and over: programs that drop pixels and keep their place write zeros.
+ */
+static bool is_blank(const source *s, uint64_t offset, uint64_t count)
+{
+    uint8_t sample[4096];
+    if (count < sizeof sample || fetch(s, offset + (count - sizeof sample) / 2, sample, sizeof sample) != WEFT_OK)
+        return false;
+    return memcmp(sample, sample + 1, sizeof sample - 1) == 0;
+}
+
 static weft_code check_pixels(const tiff *t, const directory *d)
 {
-    uint64_t missing = 0, offset, count;
+    uint64_t missing = 0, blank = 0, bytes = 0, offset, count;
     if (d->offsets.count == 0 || d->offsets.count != d->counts.count)
         return WEFT_OK;
     if (!holds(t->s, d->offsets.place, d->offsets.count))
@@ -237,7 +252,17 @@ static weft_code check_pixels(const tiff *t, const directory *d)
         WEFT_TRY(value_at(t, &d->offsets, i, &offset));
         WEFT_TRY(value_at(t, &d->counts, i, &count));
         missing += !is_unsaid(offset) && (offset == 0 || count == 0 || !holds(t->s, offset, count));
+        bytes += count;
+        /* One that is not ends the search. */
+        blank += t->is_raw && blank == i && is_blank(t->s, offset, count);
     }
+    if (t->is_raw && d->width < UINT32_MAX && d->height < UINT32_MAX &&
+        d->width * d->height / MOST_PIXELS_IN_BYTE > bytes)
+        return weft_fail(t->s->error, WEFT_DAMAGED,
+                         "image '%s' is not whole: %" PRIu64 " bytes cannot hold %" PRIu64 " x %" PRIu64 " pixels",
+                         t->s->path, bytes, d->width, d->height);
+    if (blank == d->offsets.count)
+        return damaged(t->s, "it holds no values of a sensor");
     if (missing == 0)
         return WEFT_OK;
     return weft_fail(t->s->error, WEFT_DAMAGED,

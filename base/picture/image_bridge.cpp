@@ -78,6 +78,8 @@ weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *ima
     int first = 0, channels = spec.nchannels < 3 ? 1 : 3;
     if (channels == 3 && is_exr(input))
         WEFT_TRY(weft_exr_colour_channels(spec, path, &first, error));
+    if (is_raw(input))
+        WEFT_TRY(weft_raw_check_packing(path, error));
     size_t pixel_count = size_t(spec.width) * size_t(spec.height);
     WEFT_TRY(weft_image_create(spec.width, spec.height, image, error));
     weft_code code = WEFT_OK;

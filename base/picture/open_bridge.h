@@ -24,6 +24,9 @@ std::unique_ptr<OIIO::ImageInput> weft_image_open(const char *path, weft_colour_
 /* WEFT_DAMAGED where the library read a picture and complains of its data, as of a JPEG that ends too early. */
 weft_code weft_image_check_read(OIIO::ImageInput &input, const char *path, weft_error *error);
 
+/* WEFT_DAMAGED where camera raw cannot be unpacked, or only with errors, which OpenImageIO does not tell. */
+weft_code weft_raw_check_packing(const char *path, weft_error *error);
+
 /* WEFT_DAMAGED where camera raw has rows without any light, or nothing but one value: no sensor counts so. */
 weft_code weft_raw_check_light(const weft_image *image, const char *path, weft_error *error);
 

@@ -161,6 +161,14 @@ static void raw_files_without_their_pixels_are_no_photographs(void **state)
     write_dng("picture.dng", 1);
     assert_int_equal(truncate("picture.dng", WIDTH * HEIGHT * 2), 0);
     assert_refused("picture.dng", "end too early");
+    write_dng("picture.dng", 1);
+    FILE *file = fopen("picture.dng", "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, -WIDTH * HEIGHT * 2, SEEK_END), 0);
+    for (int i = 0; i < WIDTH * HEIGHT * 2; i++)
+        fputc(0, file);
+    fclose(file);
+    assert_refused("picture.dng", "holds no values of a sensor");
     write_dng("picture.dng", 0);
     assert_refused("picture.dng", "of its 48 rows hold nothing");
     write_dng("picture.dng", 1e4);
