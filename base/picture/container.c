@@ -122,6 +122,50 @@ static weft_code read_png(source *s, weft_colour_tags *tags)
     return has_pixels ? WEFT_OK : damaged(s, "it has no pixels");
 }
 
+/* ---- JPEG ---- */
+
+/* Scans the data that begin at a place up to the next marker for a cluster of a disk that was never written: codes of
+ * Huffman leave no such run of zeros, but a decoder does not mind one. */
+static weft_code check_scan(const source *s, uint64_t place)
+{
+    enum { LONGEST = 128 };
+    uint8_t block[16384], last = 1;
+    size_t zeros = 0;
+    for (size_t count; place < s->size; place += count) {
+        count = s->size - place < sizeof block ? (size_t)(s->size - place) : sizeof block;
+        WEFT_TRY(fetch(s, place, block, count));
+        for (size_t i = 0; i < count; last = block[i++]) {
+            if (last == 0xff && block[i] != 0 && (block[i] < 0xd0 || block[i] > 0xd7))
+                return WEFT_OK;
+            zeros = block[i] ? 0 : zeros + 1;
+            if (zeros >= LONGEST)
+                return damaged(s, "a part of its data was replaced by zeros");
+        }
+    }
+    return WEFT_OK;
+}
+
+/* Of a baseline JPEG: progressive ones may well refine by zeros. The decoder finds other damage. */
+static weft_code read_jpeg(source *s)
+{
+    enum { BASELINE = 0xc0, EXTENDED = 0xc1, START_OF_SCAN = 0xda };
+    bool is_sequential = false;
+    uint64_t place = 2;
+    s->big_endian = true;
+    for (;;) {
+        uint8_t head[4];
+        if (!holds(s, place, sizeof head))
+            return WEFT_OK;
+        WEFT_TRY(fetch(s, place, head, sizeof head));
+        if (head[0] != 0xff)
+            return WEFT_OK;
+        place += 2 + number_of(s, head + 2, 2);
+        is_sequential = is_sequential || head[1] == BASELINE || head[1] == EXTENDED;
+        if (head[1] == START_OF_SCAN)
+            return is_sequential ? check_scan(s, place) : WEFT_OK;
+    }
+}
+
 /* ---- TIFF ---- */
 
 enum {
@@ -509,6 +553,8 @@ static weft_code read_structure(source *s, weft_container *container, weft_colou
         *container = WEFT_CONTAINER_PNG;
         return read_png(s, tags);
     }
+    if (memcmp(head, "\xff\xd8\xff", 3) == 0)
+        return read_jpeg(s);
     if (memcmp(head, "\x76\x2f\x31\x01", 4) == 0) {
         *container = WEFT_CONTAINER_EXR;
         return read_exr(s);

@@ -382,7 +382,7 @@ static void a_tiff_that_ends_too_early_is_refused(void **state)
 
 /* ---- JPEG ---- */
 
-static void a_jpeg_that_ends_too_early_is_refused(void **state)
+static void a_jpeg_that_is_not_whole_is_refused(void **state)
 {
     (void)state;
     const weft_camera_notes notes = {"M", "N", "2026:01:01 00:00:00", 1, 1, 8, 100, 50, 50};
@@ -399,6 +399,17 @@ static void a_jpeg_that_ends_too_early_is_refused(void **state)
         file.count = count;
         save(&file, "a.jpg");
         assert_refused("a.jpg", "not whole");
+    }
+    /* Clusters of a disk that were never written: the decoder does not notice. */
+    weft_container container;
+    weft_colour_tags tags = {0};
+    for (size_t size = 256; size <= 512; size *= 2) {
+        bytes zeroed = file;
+        zeroed.count = whole;
+        memset(zeroed.data + whole / 2, 0, size);
+        save(&zeroed, "a.jpg");
+        assert_int_equal(weft_container_read("a.jpg", &container, &tags, NULL), WEFT_DAMAGED);
+        assert_refused("a.jpg", "replaced by zeros");
     }
     /* The end alone, and the data cut out before it. */
     memcpy(file.data + whole / 2, file.data + whole - 2, 2);
@@ -421,7 +432,7 @@ int test_container(void)
         cmocka_unit_test(a_heif_that_ends_too_early_is_refused),
         cmocka_unit_test(white_is_one_whether_it_is_written_as_zero_or_not),
         cmocka_unit_test(a_tiff_that_ends_too_early_is_refused),
-        cmocka_unit_test(a_jpeg_that_ends_too_early_is_refused),
+        cmocka_unit_test(a_jpeg_that_is_not_whole_is_refused),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }
