@@ -81,9 +81,10 @@ const weft_command weft_command_tradeoff = {
     .documentation =
         "Example: weft tradeoff silk.btf.h5 -o silk-prices\n\n"
         "Fits every model that the dataset supports: lobes, components, fewer photographs and texels, BARD "
-        "from one light, models of RTI of one view, and a weave with --weave. Writes one HTML page with bytes, time of "
-        "the fit and of a frame, and the error on held-out and on fitted photographs; plots; the models that no other "
-        "one beats; and the same as comma-separated values. Takes minutes.",
+        "from one light, models of RTI of one view, products of matrices of a grid, and a weave with --weave. Writes "
+        "one HTML page with bytes, time of the fit and of a frame, and the error on held-out and on fitted "
+        "photographs; plots; the models that no other one beats; and the same as comma-separated values. Takes "
+        "minutes.",
     .options = option_table,
     .needs = "a dataset and -o REPORT/",
     .surplus = "one dataset at a time",

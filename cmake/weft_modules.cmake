@@ -130,7 +130,7 @@ weft_module(compare/rti
 weft_module(compare/error_budget
     USES base base/text btf/dataset btf/material capture capture/virtual compress evaluate geometry registration)
 weft_module(compare/tradeoff
-    USES base base/picture base/text btf/dataset btf/direction btf/material compare/pictures compare/rti compress compress/bard compress/fit compress/hold_out compress/run compress/weave_fit evaluate player/draw reflectance)
+    USES base base/picture base/text btf/dataset btf/direction btf/material compare/pictures compare/rti compress compress/bard compress/components compress/fit compress/hold_out compress/run compress/weave_fit evaluate import player/draw reflectance)
 weft_module(inspect
     USES base base/picture base/text btf/dataset btf/direction btf/material btf/session capture compress/hold_out geometry player/draw reflectance)
 

@@ -13,7 +13,7 @@
  *                                  a legend; "plot disc": small, without a frame;
  *                                  <div class="plots"> holds two or three
  *     <div class="pairs">          rows of two small pictures side by side
- *     class="colour0" to "colour7" what belongs together
+ *     class="colour0" to "colour8" what belongs together
  *
  * It is light or dark as the reader's system is. Pictures enlarge at a click; those of one row, figure or gallery may
  * then be wiped one against the other. */

@@ -330,6 +330,27 @@ static weft_code ask_bard_or_rti(const weft_held_bench *bench, const weft_priced
     return code;
 }
 
+/* The photographs as the matrices restore them, interpolated. */
+static weft_code ask_factorised(const weft_priced_model *model, const weft_trial *trial, const uint8_t *unseen,
+                                said *answer, weft_error *error)
+{
+    const weft_texel_subset *subset = trial->subset;
+    const weft_dataset_layout *layout = &subset->layout;
+    size_t bytes = 3 * (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count * sizeof(weft_half);
+    weft_texel_subset restored = *subset;
+    weft_trial of_restored = *trial;
+    of_restored.subset = &restored;
+    restored.samples = malloc(bytes);
+    if (!restored.samples)
+        return weft_fail_memory(error, "samples", bytes);
+    memcpy(restored.samples, subset->samples, bytes);
+    weft_code code = weft_factorised_restore(model->factorised, subset, unseen, restored.samples, error);
+    if (code == WEFT_OK)
+        code = weft_trial_ask_photographs(&of_restored, false, &answer->held, error);
+    free(restored.samples);
+    return code;
+}
+
 static weft_code ask_fitted_cloth(weft_held_bench *bench, const weft_trial *trial, const uint8_t *unseen,
                                   weft_priced_cloth *cloth, said *answer, weft_error *error)
 {
@@ -363,6 +384,8 @@ static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *mode
         return weft_trial_ask_photographs(trial, model->options.heights, &answer->held, error);
     if (model->family == WEFT_PRICED_BARD || model->family == WEFT_PRICED_RTI)
         return ask_bard_or_rti(bench, model, trial, unseen, answer, error);
+    if (model->family == WEFT_PRICED_FACTORISED)
+        return ask_factorised(model, trial, unseen, answer, error);
     if (model->family == WEFT_PRICED_CLOTH)
         return ask_cloth(bench, model, trial, unseen, answer, error);
     if (!bench->is_fitted)

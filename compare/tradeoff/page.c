@@ -252,7 +252,8 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
         "relative to the little light there is. These errors, and PSNR, SSIM and FLIP of pictures, are of photographs "
         "that were not fitted; each texel is a pixel. 95 % interval: the mean width of the interval that holds 95 % of "
         "these samples, relative to the mean sample. Flicker: while a light sweeps across, the brightness of a place "
-        "moves so much farther than up and down once; 0 is smooth. BARD and RTI have no frames, because the player "
+        "moves so much farther than up and down once; 0 is smooth. BARD, RTI and matrices have no frames, because the "
+        "player "
         "does "
         "not draw them.</p>\n",
         page->html);

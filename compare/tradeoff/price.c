@@ -233,16 +233,20 @@ static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_pri
                                        error);
 }
 
-/* The photographs of BARD are half floats, numbers of RTI bytes. */
-static void price_bard_or_rti(const weft_price_shop *shop, const weft_priced_model *model, weft_price *price)
+/* Of what nothing plays. The photographs of BARD are half floats, numbers of RTI bytes. */
+static void price_by_size(const weft_price_shop *shop, const weft_priced_model *model, weft_price *price)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    if (model->family == WEFT_PRICED_BARD)
+    double texels = (double)layout->width * layout->height;
+    if (model->family == WEFT_PRICED_BARD) {
         price->photograph_count = weft_bard_count_photographs(layout, NULL);
-    price->bits_a_texel = model->family == WEFT_PRICED_BARD
-                              ? 8.0 * 3 * sizeof(weft_half) * price->photograph_count
-                              : 8.0 * 3 * weft_rti_coefficients(model->rti, price->photograph_count);
-    price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
+        price->bytes = 3 * sizeof(weft_half) * price->photograph_count * texels;
+    }
+    if (model->family == WEFT_PRICED_RTI)
+        price->bytes = 3 * weft_rti_coefficients(model->rti, price->photograph_count) * texels;
+    if (model->family == WEFT_PRICED_FACTORISED)
+        price->bytes = weft_factorised_bytes(model->factorised, texels, price->photograph_count);
+    price->bits_a_texel = 8 * price->bytes / texels;
 }
 
 static weft_code price_opened_cloth(weft_price_shop *shop, const char *given, weft_priced_cloth *cloth,
@@ -280,8 +284,8 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
         return price_raw(shop, model->options.heights, price, error);
     if (model->family == WEFT_PRICED_CLOTH)
         return price_cloth(shop, model->cloth, price, error);
-    if (model->family == WEFT_PRICED_BARD || model->family == WEFT_PRICED_RTI) {
-        price_bard_or_rti(shop, model, price);
+    if (!weft_priced_model_is_fit(model)) {
+        price_by_size(shop, model, price);
         return WEFT_OK;
     }
     WEFT_TRY(fit(shop, model, left_out, error));

@@ -139,6 +139,16 @@ static void add_rti(model_list *list)
     }
 }
 
+static void add_factorised(model_list *list)
+{
+    if (!weft_factorised_is_for(list->layout))
+        return;
+    for (weft_factorised_kind kind = 0; kind < WEFT_FACTORISED_KINDS; kind++) {
+        add_alone(list, WEFT_PRICED_FACTORISED, weft_factorised_name(kind));
+        list->model[list->count - 1].factorised = kind;
+    }
+}
+
 static void add_raw(model_list *list, bool through, const char *name)
 {
     add_alone(list, WEFT_PRICED_RAW, name);
@@ -172,6 +182,7 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
     add_subsets(&list);
     add_bard(&list);
     add_rti(&list);
+    add_factorised(&list);
     if (dataset->cloth)
         add_alone(&list, WEFT_PRICED_CLOTH, "analytic cloth");
     add_photographs(&list);
@@ -181,7 +192,7 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
 const char *weft_priced_family_name(weft_priced_family family)
 {
     static const char *const name[] = {"lobes",          "components", "fewer photographs", "photographs", "BARD",
-                                       "analytic cloth", "RTI"};
+                                       "analytic cloth", "RTI",        "matrices"};
     return name[family];
 }
 

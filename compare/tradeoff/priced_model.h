@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "compare/rti/rti.h"
+#include "compare/tradeoff/factorised.h"
 #include "compress/options/options.h"
 
 #include <stdbool.h>
@@ -14,11 +15,12 @@ enum { WEFT_PRICED_MOST = 64, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 
 typedef enum weft_priced_family {
     WEFT_PRICED_LOBES, /* with T where the photographs carry it */
     WEFT_PRICED_COMPONENTS,
-    WEFT_PRICED_FEWER, /* photographs */
-    WEFT_PRICED_RAW,   /* the photographs, interpolated */
-    WEFT_PRICED_BARD,  /* those under the light along the normal, which say all others (reflectance/bard/bard.h) */
-    WEFT_PRICED_CLOTH, /* analytic (compare/tradeoff/cloth.h) */
-    WEFT_PRICED_RTI,   /* of one view: what users of RTI know (compare/rti/rti.h) */
+    WEFT_PRICED_FEWER,      /* photographs */
+    WEFT_PRICED_RAW,        /* the photographs, interpolated */
+    WEFT_PRICED_BARD,       /* those under the light along the normal, which say all others (reflectance/bard/bard.h) */
+    WEFT_PRICED_CLOTH,      /* analytic (compare/tradeoff/cloth.h) */
+    WEFT_PRICED_RTI,        /* of one view: what users of RTI know (compare/rti/rti.h) */
+    WEFT_PRICED_FACTORISED, /* the photographs of a grid, as files of Bonn (compare/tradeoff/factorised.h) */
     WEFT_PRICED_FAMILIES
 } weft_priced_family;
 
@@ -35,9 +37,10 @@ typedef struct weft_priced_model {
     weft_priced_family family;
     weft_compress_options options; /* of raw only heights: seen through them */
     weft_photographs_taken photographs;
-    const char *cloth;  /* file of a WEFT_PRICED_CLOTH; not owned */
-    weft_rti_model rti; /* of a WEFT_PRICED_RTI */
-    int work;           /* of a fit, relative to others */
+    const char *cloth;               /* file of a WEFT_PRICED_CLOTH; not owned */
+    weft_rti_model rti;              /* of a WEFT_PRICED_RTI */
+    weft_factorised_kind factorised; /* of a WEFT_PRICED_FACTORISED */
+    int work;                        /* of a fit, relative to others */
 } weft_priced_model;
 
 /* What else of a dataset decides which models it can carry. */
@@ -61,7 +64,7 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
  * same without: it keeps heights only where they gain enough (compress/hold_out/hold_out.h). Pure. */
 bool weft_priced_heights_are_kept(double without, double through);
 
-/* Whether the model is what weft_compress fits; else it is raw, BARD, analytic cloth or of RTI. Pure. */
+/* Whether the model is what weft_compress fits; else it is raw, BARD, analytic cloth, of RTI or matrices. Pure. */
 bool weft_priced_model_is_fit(const weft_priced_model *model);
 
 /* Whether it is such a fit of each texel alone: of lobes and tables, not of components. Pure. */

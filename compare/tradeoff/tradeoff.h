@@ -21,9 +21,9 @@ typedef struct weft_price {
     double bits_a_texel;         /* of the dataset */
     double fit_s;                /* of the whole dataset */
     double evaluations_a_second; /* of one thread: BRDFs at places and directions drawn at random */
-    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD and RTI, which nothing plays */
-    bool has_flicker;            /* of BARD and RTI there is none */
-    double flicker;              /* below */
+    double frame_ms;  /* 730 x 400 pixels; 0 where it was not drawn, as BARD, RTI and matrices, which nothing plays */
+    bool has_flicker; /* not of BARD, RTI and matrices */
+    double flicker;   /* below */
 } weft_price;
 
 /* A shop that fits all of the texels of a dataset, or the middle ones. */
