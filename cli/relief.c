@@ -5,7 +5,6 @@
 #include "cli/command/heights.h"
 #include "relief/move.h"
 #include "relief/page.h"
-#include "relief/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>

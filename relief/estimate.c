@@ -1,5 +1,4 @@
 #include "relief/height_map.h"
-#include "relief/held_out.h"
 #include "relief/relief.h"
 #include "relief/sweep.h"
 

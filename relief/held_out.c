@@ -1,4 +1,4 @@
-#include "relief/held_out.h"
+#include "relief/height_map.h"
 
 #include "btf/direction/triangulation.h"
 #include "reflectance/relief/relief.h"

@@ -72,4 +72,16 @@ weft_code weft_relief_estimate(weft_dataset *dataset, const weft_relief_options 
                                weft_relief_report *report, weft_error *error);
 void weft_relief_report_free(weft_relief_report *report);
 
+/* ---- The surface as files that other programs read ---- */
+
+/* The surface as a Wavefront OBJ file with texture coordinates, written atomically: a vertex in the middle of every
+ * place, in mm, the lower left corner of the material at the origin. Errors: WEFT_SYSTEM. */
+weft_code weft_surface_write_obj(const char *path, const weft_dataset_heights *heights, double width_mm,
+                                 double height_mm, weft_error *error);
+
+/* Its normals as a picture, a pixel a place: (n + 1) / 2 as red, green, blue with x to the right, y up and z toward the
+ * viewer, not gamma-coded. The material repeats. Errors: WEFT_SYSTEM. */
+weft_code weft_surface_write_normals(const char *path, const weft_dataset_heights *heights, double width_mm,
+                                     double height_mm, weft_error *error);
+
 #endif

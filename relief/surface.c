@@ -1,4 +1,4 @@
-#include "relief/surface.h"
+#include "relief/relief.h"
 
 #include "base/atomic_file.h"
 #include "base/picture/image.h"
