@@ -3,8 +3,7 @@
 #include "capture/plan.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
-#include "registration/axes/expectation.h"
-#include "registration/axes/sightings.h"
+#include "registration/axes/calibration.h"
 #include "registration/registration.h"
 
 #include <math.h>

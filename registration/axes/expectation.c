@@ -1,4 +1,4 @@
-#include "registration/axes/expectation.h"
+#include "registration/axes/calibration.h"
 
 #include "base/numeric/statistics.h"
 

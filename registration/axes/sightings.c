@@ -1,4 +1,4 @@
-#include "registration/axes/sightings.h"
+#include "registration/axes/calibration.h"
 
 #include "registration/pose/pose_chain.h"
 #include "registration/viewpoint_photographs.h"

@@ -1,7 +1,6 @@
 #include "registration/colour/calibration.h"
 
 #include "base/picture/colour.h"
-#include "registration/colour/fit.h"
 #include "registration/colour/grey_tone.h"
 #include "registration/colour/patches.h"
 

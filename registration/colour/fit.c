@@ -1,4 +1,4 @@
-#include "registration/colour/fit.h"
+#include "registration/colour/calibration.h"
 
 #include "base/numeric/statistics.h"
 #include "registration/colour/difference.h"

@@ -1,6 +1,6 @@
 /* The axes of a goniometer out of 20 shots, against what they truly are. The shots come from the virtual goniometer:
  * what is fitted are lines in the frame of the plate. */
-#include "registration/axes/expectation.h"
+#include "registration/axes/calibration.h"
 #include "tests/support/axes_series.h"
 #include "tests/support/cmocka_all.h"
 

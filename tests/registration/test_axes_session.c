@@ -7,7 +7,6 @@
 #include "capture/capture.h"
 #include "capture/virtual/ground_truth.h"
 #include "registration/axes/calibration.h"
-#include "registration/axes/sightings.h"
 #include "registration/registration.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/ground_truth.h"

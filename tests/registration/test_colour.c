@@ -2,7 +2,6 @@
 #include "btf/session/colour.h"
 #include "registration/colour/calibration.h"
 #include "registration/colour/difference.h"
-#include "registration/colour/fit.h"
 #include "tests/support/chart_picture.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/run_weft.h"

@@ -2,8 +2,7 @@
  * ones. What makes the photographs shares the formula of distortion with OpenCV, and nothing else. */
 #include "base/picture/image.h"
 #include "btf/session/target.h"
-#include "capture/print/lens_board.h"
-#include "capture/print/target_sheet.h"
+#include "capture/print/sheets.h"
 #include "registration/lens/calibration.h"
 #include "tests/registration/plate.h"
 #include "tests/support/expect_ok.h"
