@@ -1,6 +1,5 @@
-#include "capture/print/lens_board.h"
 #include "capture/print/page.h"
-#include "capture/print/target_sheet.h"
+#include "capture/print/sheets.h"
 #include "cli/command/arguments.h"
 
 typedef struct target_command {

@@ -1,7 +1,6 @@
 #include "capture/laboratory/rig_file.h"
 
 #include "base/text/text_file.h"
-#include "capture/laboratory/schema.h"
 
 #include <confuse.h>
 #include <math.h>

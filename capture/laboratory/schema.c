@@ -1,4 +1,4 @@
-#include "capture/laboratory/schema.h"
+#include "capture/laboratory/rig_file.h"
 
 #include "btf/session/session.h"
 

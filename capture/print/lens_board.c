@@ -1,4 +1,4 @@
-#include "capture/print/lens_board.h"
+#include "capture/print/sheets.h"
 
 #include "capture/print/dictionary_bridge.h"
 #include "capture/print/page.h"

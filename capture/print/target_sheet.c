@@ -1,4 +1,4 @@
-#include "capture/print/target_sheet.h"
+#include "capture/print/sheets.h"
 
 #include "capture/print/page.h"
 

@@ -4,7 +4,7 @@
 #include "btf/direction/direction.h"
 #include "btf/session/camera.h"
 #include "btf/session/target.h"
-#include "capture/print/target_sheet.h"
+#include "capture/print/sheets.h"
 #include "registration/pose/opencv_bridge.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
