@@ -1,4 +1,4 @@
-#include "geometry/drape/base_surface.h"
+#include "geometry/drape/draped_cloth.h"
 
 #include <math.h>
 #include <stdlib.h>
