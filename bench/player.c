@@ -6,7 +6,7 @@
 #include "bench/fetches.h"
 #include "bench/measure.h"
 #include "compare/pictures/picture_quality.h"
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"

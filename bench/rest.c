@@ -3,7 +3,7 @@
  * that moves. Usage: bench_rest NAME.weft|CLOTH.wv [FRAMES...] */
 #include "bench/measure.h"
 #include "compare/pictures/picture_quality.h"
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"

@@ -1,4 +1,4 @@
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "player/draw/lobe_probe.h"
+#include "player/draw/probe.h"
 
 #include "base/picture/colour.h"
 #include "player/draw/player_parts.h"

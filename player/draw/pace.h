@@ -1,7 +1,9 @@
-/* How interactive frames keep their target of 30 a second: they are sampled less and, if need be, drawn smaller. Pure:
- * times in, what to draw out; no OpenGL and no clock. */
+/* How interactive frames keep their target of 30 a second: they are sampled less and, if need be, drawn smaller. The
+ * pace is pure: times in, what to draw out; no OpenGL and no clock. */
 #ifndef WEFT_PLAYER_DRAW_PACE_H
 #define WEFT_PLAYER_DRAW_PACE_H
+
+#include "player/draw/player.h"
 
 #include <stdbool.h>
 
@@ -32,5 +34,16 @@ double weft_pace_side(const weft_pace *pace);
  * in a row with time for the next larger side, and some to spare, get that side. Times that are negative or not finite
  * are ignored. */
 void weft_pace_note(weft_pace *pace, bool interactive, double drawn_ms, double shown_ms);
+
+/* ---- The frames of a window: interactive ones, and those whose mean is the converged picture ---- */
+
+/* Draws an interactive frame as `pace` says. A smaller frame is enlarged, its labels are not. Clears the canvas.
+ * Errors: those of weft_player_draw. */
+weft_code weft_player_draw_interactive(weft_player *player, const weft_scene *scene, const weft_pace *pace,
+                                       weft_canvas *canvas, weft_error *error);
+
+/* Sampling of frame number `frame`, from 0: the first lies on the centres of the pixels, any first few are evenly
+ * distributed over them. Pure. */
+weft_sampling weft_sampling_converging(int frame);
 
 #endif

@@ -22,7 +22,7 @@ typedef struct weft_variant {
     /* Of the compressed material: */
     int component_groups; /* four components each, in the place of lobes; 0: lobes */
     int drawn_groups;     /* the first of them, which are evaluated */
-    int incidence_power;  /* of the maps of the components (player/texture/component_texture.h) */
+    int incidence_power;  /* of the maps of the components (player/texture/material_texture.h) */
     int lobe_count;
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */

@@ -1,4 +1,4 @@
-#include "player/raw/fill.h"
+#include "player/raw/stream.h"
 
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-#include "player/raw/levels.h"
+#include "player/raw/stream.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,5 @@
 #include "player/raw/stream.h"
 
-#include "player/raw/fill.h"
-
 #include <stdlib.h>
 
 enum { MAX_BLOCK_ROWS = 16 };

@@ -1,4 +1,4 @@
-#include "player/settings/relative_path.h"
+#include "player/settings/json.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -4,7 +4,6 @@
 #include "base/text/json_text.h"
 #include "player/scene/surroundings.h"
 #include "player/settings/json.h"
-#include "player/settings/relative_path.h"
 
 #include <stdio.h>
 #include <stdlib.h>

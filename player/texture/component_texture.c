@@ -1,4 +1,4 @@
-#include "player/texture/component_texture.h"
+#include "player/texture/material_texture.h"
 
 #include "reflectance/components/components.h"
 

@@ -1,7 +1,7 @@
 #include "player/window/application_state.h"
 
 #include "base/clock.h"
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 #include "player/settings/exposure.h"
 
 #include <epoxy/gl.h>

@@ -2,18 +2,16 @@
 #ifndef WEFT_PLAYER_WINDOW_APPLICATION_STATE_H
 #define WEFT_PLAYER_WINDOW_APPLICATION_STATE_H
 
-#include "player/draw/lobe_probe.h"
 #include "player/draw/pace.h"
 #include "player/draw/probe.h"
 #include "player/gl/context.h"
 #include "player/settings/scene_part.h"
 #include "player/window/application.h"
-#include "player/window/folder_files.h"
+#include "player/window/files.h"
 #include "player/window/history.h"
 #include "player/window/idle.h"
 #include "player/window/interaction.h"
 #include "player/window/space_mouse.h"
-#include "player/window/watch.h"
 #include "player/window/weave_edit.h"
 
 #include <limits.h>

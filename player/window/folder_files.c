@@ -1,4 +1,4 @@
-#include "player/window/folder_files.h"
+#include "player/window/files.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "player/window/watch.h"
+#include "player/window/files.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 /* The list of what a folder holds for a window: its order, what is left out, and the way up and down. */
 #include "tests/support/cmocka_all.h"
 
-#include "player/window/folder_files.h"
+#include "player/window/files.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,7 +1,7 @@
 /* A picture at rest has no hatch. Neighbouring pixels are lit from other places; what they lack after half a second
  * must not repeat every few pixels. Measured as waves of two to four pixels in what the picture lacks of a much longer
  * mean, which has seen everything. */
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
 #include "stage.h"

@@ -1,5 +1,5 @@
 /* The frames of a picture that moves: small ones enlarged, and few lights in the place of many. */
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 #include "player/scene/environment.h"
 #include "stage.h"
 

@@ -1,5 +1,4 @@
 /* What the panel says of the pixel under the pointer. */
-#include "player/draw/lobe_probe.h"
 #include "player/draw/probe.h"
 #include "stage.h"
 

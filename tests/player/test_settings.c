@@ -1,7 +1,7 @@
 #include "player/settings/settings.h"
 
 #include "base/atomic_file.h"
-#include "player/settings/relative_path.h"
+#include "player/settings/json.h"
 #include "player/settings/settings.h"
 #include "settings_text.h"
 #include "tests/support/cmocka_all.h"

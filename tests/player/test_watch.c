@@ -1,5 +1,5 @@
 /* Files that change while they are watched. */
-#include "player/window/watch.h"
+#include "player/window/files.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

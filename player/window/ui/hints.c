@@ -1,4 +1,4 @@
-#include "player/window/ui/hints.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include <string.h>
 

@@ -1,7 +1,6 @@
 #include "player/window/ui/ui_bridge.h"
 
 #include "base/picture/font_file.h"
-#include "player/window/ui/hints.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

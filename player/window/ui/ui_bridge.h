@@ -105,6 +105,14 @@ void weft_ui_disc(double x, double y, double radius, uint32_t colour);
 void weft_ui_ring(double x, double y, double radius, double thickness, uint32_t colour);
 void weft_ui_label(double x, double y, uint32_t colour, const char *text);
 
+/* ---- Hints: one line on a widget of the panel, shown where the pointer rests on it. Pure. ---- */
+
+/* NULL where the label says it all. A key that does the same stands in brackets at the end. */
+const char *weft_hint_of(const char *label);
+
+/* All of them, for the tests: that of `number`, or NULL beyond the last; its label in *label. */
+const char *weft_hint_at(size_t number, const char **label);
+
 #ifdef __cplusplus
 }
 #endif

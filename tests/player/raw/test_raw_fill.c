@@ -1,5 +1,5 @@
 #include "btf/direction/direction.h"
-#include "player/raw/fill.h"
+#include "player/raw/stream.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>

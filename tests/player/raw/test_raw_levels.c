@@ -1,7 +1,7 @@
 /* Rows that go in as texels come out as blocks, on every level. */
 #include "base/half.h"
 #include "base/integers.h"
-#include "player/raw/levels.h"
+#include "player/raw/stream.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>

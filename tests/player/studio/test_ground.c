@@ -1,8 +1,8 @@
 /* The ground that cloth stands on, and the shadow that it takes. */
 #include "base/numeric/statistics.h"
 #include "player/draw/canvas.h"
-#include "player/draw/interactive.h"
 #include "player/draw/lighting.h"
+#include "player/draw/pace.h"
 #include "player/draw/player_parts.h"
 #include "player/scene/surroundings.h"
 #include "studio.h"

@@ -1,7 +1,7 @@
 /* The light that a picture begins in: shadows without acne, no grain in the mean, folds neither black nor white. */
 #include "base/numeric/statistics.h"
 #include "player/draw/canvas.h"
-#include "player/draw/interactive.h"
+#include "player/draw/pace.h"
 #include "player/scene/surroundings.h"
 #include "studio.h"
 

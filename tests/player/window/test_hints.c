@@ -1,6 +1,6 @@
 /* The hints of the panel: each belongs to a widget that there is, and the key in it does that. */
 #include "player/window/keys.h"
-#include "player/window/ui/hints.h"
+#include "player/window/ui/ui_bridge.h"
 #include "tests/support/expect_ok.h"
 
 #include <stdio.h>

@@ -1,5 +1,4 @@
 /* Where a pointer that rests is told what a widget does: anywhere on it, on its label and on its value. */
-#include "player/window/ui/hints.h"
 #include "player/window/ui/ui_bridge.h"
 #include "tests/player/window/ui_frames_bridge.h"
 #include "tests/support/expect_ok.h"
