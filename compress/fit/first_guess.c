@@ -22,6 +22,7 @@ enum {
 #define START_TOLERANCE 1e-2
 #define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not followed */
 #define NEAR 1.1   /* nor is a challenger refined that leaves so many times what the incumbent leaves */
+#define ALIKE 0.99 /* of two residuals: both starts have found the same, and the screen is followed no further */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 #define WORTHWHILE 0.98        /* a frame is turned only where that takes at least 2 % off the squared error */
 
@@ -135,6 +136,13 @@ static void settle(search *own)
     own->left[CHALLENGER] = left;
 }
 
+/* Whether the best challenger leaves as much as the incumbent. */
+static bool are_alike(const search *own)
+{
+    double a = own->left[INCUMBENT], b = own->left[CHALLENGER];
+    return own->has_incumbent && own->has_challenger && fmin(a, b) > ALIKE * fmax(a, b);
+}
+
 /* From the best fit to the best with one lobe more. */
 static void grow(search *own)
 {
@@ -153,7 +161,7 @@ static void grow(search *own)
         weft_fit more = with_lobe_split(&base, split);
         try_shapes(own, &more, own->options.lobe_count > 2);
     }
-    for (int i = 0; i < found; i++) {
+    for (int i = 0; i < found && (i == 0 || !are_alike(own)); i++) {
         weft_fit more = base;
         more.lobe[more.lobe_count++] = lobe[i];
         try_shapes(own, &more, false);
@@ -205,6 +213,7 @@ static double finish(const search *own, weft_fit *fit, double *table)
         refine(own, true, &turned, turned_table);
         if (turned.residual < WORTHWHILE * fit->residual) {
             *fit = turned;
+            fit->has_turned = true;
             memcpy(table, turned_table, (size_t)own->bundle->view_count * sizeof *table);
         }
     }

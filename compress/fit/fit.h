@@ -21,6 +21,7 @@ typedef struct weft_fit {
     int lobe_count;
     weft_fit_lobe lobe[WEFT_MATERIAL_MAX_LOBES];
     weft_frame frame; /* of the texel */
+    bool has_turned;  /* the frame is not the one that the search began in */
     double residual;  /* weighted sum of squares; compare with weft_samples.energy */
     int passes;       /* over the samples, coarse ones counted as a quarter (rounded up) */
 } weft_fit;

@@ -10,7 +10,8 @@
 /* In a level of many texels this share of them is enough for percentiles. */
 enum { TALLIED_TEXELS = 1024 };
 
-/* The fit of the grey samples is a start, not worth its last steps. */
+/* The fit of the grey samples is a start, not worth its last steps: it is found with few lights and then refined with
+ * all. */
 #define GREY_TOLERANCE 3e-3
 
 /* How much brighter, as a root mean square, a view without samples may be than the nearest one with: facing the rim of
@@ -207,11 +208,18 @@ static weft_fit fit_grey(weft_texel_fitter *fitter, const weft_fit_options *opti
     weft_fit best = {.residual = INFINITY};
     grey.tolerance = GREY_TOLERANCE;
     grey.fit_frame = true;
+    grey.coarse = fitter->bundle.is_coarse;
     try_frame(fitter, &grey, weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0), &best);
     if (given && options->lobe_count > 0) {
         const weft_material_level *from = &given->level[level];
         size_t texel = (size_t)y * (size_t)from->width + (size_t)x;
         try_frame(fitter, &grey, weft_frame_decode(from->frame + 3 * texel), &best);
+    }
+    if (grey.coarse) {
+        grey.coarse = false;
+        grey.fit_frame = best.has_turned;
+        weft_fit_refine(&fitter->bundle, &fitter->samples, WEFT_GREY, &grey, fitter->workspace, &best,
+                        fitter->grey_table[0]);
     }
     return best;
 }
