@@ -47,6 +47,8 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, paper_reflectance), .low = 0.01, .high = 1},
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(photographs_command, report_folder)},
+    {"force", .help = "Write the dataset although the photographs contradict each other", .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(photographs_command, settings.force)},
     {"linear", .help = "8- and 16-bit files hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(photographs_command, settings.linear)},
     {0},

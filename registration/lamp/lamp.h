@@ -29,9 +29,6 @@ typedef struct weft_flash {
  * cos^n has beam[2] = beam[4] = -n / 2. 0 without a beam. Pure. */
 double weft_flash_log_beam(const weft_flash *flash, const weft_pose *pose, double x, double y);
 
-/* Corrections of the logarithm of light: coefficients of powers of the encoded value, which is stretched to -1..1. */
-enum { WEFT_TONE_TERMS = 5 };
-
 /* What one photograph tells. */
 typedef struct weft_lamp_evidence {
     weft_pose pose;
@@ -64,7 +61,7 @@ typedef struct weft_lamp_problem {
 
 typedef struct weft_lamp_solution {
     weft_lamp_place *place;         /* [count]; in: where the search starts */
-    double tone[WEFT_TONE_TERMS];   /* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)) */
+    double tone[WEFT_TONE_TERMS];   /* corrections of the tone curve */
     double vignetting[3];           /* as weft_camera has it */
     double ink;                     /* reflectance of ink over that of paper */
     double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */

@@ -25,16 +25,11 @@ class lamp_search : lamp_terms
 
     weft_code solve(weft_error *error)
     {
-        ceres::Solver::Options options;
-        options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-        options.num_threads = 2;
-        options.max_num_iterations = 200;
-        options.function_tolerance = 1e-9;
-        options.logging_type = ceres::SILENT;
-        ceres::Solver::Summary summary;
-        ceres::Solve(options, &terms.problem, &summary);
-        if (!summary.IsSolutionUsable())
-            return weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
+        /* The second time the errors are those of light under the curve that was found the first time. */
+        for (int round = 0; round < 2; round++) {
+            WEFT_TRY(minimise(error));
+            std::copy_n(shared.tone, WEFT_TONE_TERMS, usual_tone);
+        }
         for (int i = 0; i < input->count; i++)
             write_place(i);
         find_uncertainties();
@@ -45,6 +40,21 @@ class lamp_search : lamp_terms
 
   private:
     weft_lamp_solution *output;
+
+    weft_code minimise(weft_error *error)
+    {
+        ceres::Solver::Options options;
+        options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+        options.num_threads = 2;
+        options.max_num_iterations = 200;
+        options.function_tolerance = 1e-8;
+        options.logging_type = ceres::SILENT;
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &terms.problem, &summary);
+        return summary.IsSolutionUsable()
+                   ? WEFT_OK
+                   : weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
+    }
 
     /* Standard errors of the lamps' directions from the middle of the sample. */
     void find_uncertainties()
@@ -65,12 +75,13 @@ class lamp_search : lamp_terms
             output->dark_error = known ? dark_error(covariance) : 1;
     }
 
-    /* (2 encoded - 1)^k of an encoded value; returns the logarithm of its light. */
-    double tone_powers(double encoded, double power[WEFT_TONE_TERMS]) const
+    /* Logarithm of the light of an encoded value; `basis`: what each coefficient counts for in it. */
+    double log_light(double encoded, double basis[WEFT_TONE_TERMS]) const
     {
-        double value = std::log((double)weft_linear_of_srgb((float)encoded)), stretched = 1;
+        double value = std::log((double)weft_linear_of_srgb((float)encoded)), slope[WEFT_TONE_TERMS];
+        weft_tone_basis(encoded, basis, slope);
         for (int k = 0; k < WEFT_TONE_TERMS; k++)
-            value += shared.tone[k] * (power[k] = stretched *= 2 * encoded - 1);
+            value += shared.tone[k] * basis[k];
         return value;
     }
 
@@ -81,8 +92,8 @@ class lamp_search : lamp_terms
         double matrix[WEFT_TONE_TERMS * WEFT_TONE_TERMS], bright[WEFT_TONE_TERMS], dark[WEFT_TONE_TERMS], variance = 0;
         if (!covariance.GetCovarianceBlock(shared.tone, shared.tone, matrix))
             return 1;
-        const double wanted = tone_powers(paper, bright) - std::log(10);
-        for (double encoded = paper; encoded > step && tone_powers(encoded, dark) > wanted;)
+        const double wanted = log_light(paper, bright) - std::log(10);
+        for (double encoded = paper; encoded > step && log_light(encoded, dark) > wanted;)
             encoded -= step;
         for (int r = 0; r < WEFT_TONE_TERMS; r++)
             for (int c = 0; c < WEFT_TONE_TERMS; c++)
@@ -126,7 +137,7 @@ class lamp_search : lamp_terms
         double r[3];
         for (const auto &[residual, photograph] : papers)
             if (photograph == i && (*residual)(lamp_of(i), own[(size_t)i].level, shared.tone, shared.vignetting,
-                                               &shared.ink, shared.beam, r))
+                                               shared.ink, shared.beam, own[(size_t)i].aim, r))
                 off.push_back(r[1] / residual->weight);
         const double middle = median(off);
         for (double &value : off)
@@ -164,10 +175,11 @@ class lamp_search : lamp_terms
         output->vignetting[0] = shared.vignetting[0] / corner;
         output->vignetting[1] = shared.vignetting[1] / (corner * corner);
         output->vignetting[2] = 0;
-        output->ink = std::exp(shared.ink);
-        for (int axis = 0; axis < 3; axis++)
+        output->ink = std::exp(shared.ink[0]);
+        for (int axis = 0; input->flash && axis < 3; axis++)
             output->flash.place_mm[axis] = shared.flash[axis] * unit_mm;
-        std::copy_n(shared.beam, WEFT_BEAM_TERMS, output->flash.beam);
+        if (input->flash)
+            std::copy_n(shared.beam, WEFT_BEAM_TERMS, output->flash.beam);
     }
 };
 

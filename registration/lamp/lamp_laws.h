@@ -16,25 +16,33 @@ namespace lamps
 constexpr double unit_mm = 100;
 
 /* Standard deviations of the model, not of the noise: paper is no perfect diffuser, and ink shines. */
-constexpr double paper_deviation = 0.01, ink_deviation = 0.05;
-constexpr double independent_samples = 30;
+constexpr double paper_deviation = 0.01, ink_deviation = 0.03;
+constexpr double independent_samples = 30, independent_pair_samples = 200;
 
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
- * place, the head of the pin within half of one; tone curves differ from sRGB by some tens of percent; ink within a
- * fifth. */
+ * place, the head of the pin within half of one; ink within a fifth. */
 constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, pin_deviation_mm = 0.5;
 constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
+
+/* Ink shines: where it mirrors the lamp it reflects 1 + shine of what it does elsewhere; tangent of the angle from
+ * there at which the shine has fallen to 1 / e. A lamp in the hand has a beam, cos^power about the place that it is
+ * held towards. */
+constexpr double shine_mean = 0.3, shine_deviation = 0.5, shine_width = 0.3, shine_width_deviation = 0.3;
+constexpr double beam_power_mean = 1, beam_power_deviation = 1, aim_deviation_mm = 50;
 
 /* Beams of flashes lie between that of a bare tube, cos^0, and one that leaves a stop less in the corners of a wide
  * lens, cos^4; a beam of cos^2 may be turned aside by six degrees. */
 constexpr double beam_mean[WEFT_BEAM_TERMS] = {0, 0, -1, 0, -1}, beam_deviation[WEFT_BEAM_TERMS] = {0.2, 0.2, 1, 1, 1};
 
-/* Tone curves are smooth: the higher a power, the less of it. */
-constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
+/* Tone curves are smooth: of the coefficients, from one to the next, and of that from one to the next. */
+constexpr double tone_deviation = 1, tone_slope_deviation = 0.3, tone_bend_deviation = 0.07;
+
+/* A curve that rises less than this share of what sRGB does is none. */
+constexpr double least_rise = 0.05;
 
 /* Of two exposures: shutters err, and not all cameras round as others do. Of the light of a place in both:
  * what a hand that is not still changes, and what the mean over a square leaves of the rounding to 8 bits. */
-constexpr double ratio_deviation = 0.02, pair_deviation = 0.02, rounding_deviation = 0.1 / 255;
+constexpr double ratio_deviation = 0.02, pair_deviation = 0.01, rounding_deviation = 0.1 / 255;
 
 using vec3 = std::array<double, 3>;
 
@@ -68,14 +76,40 @@ struct mounting {
     }
 };
 
+/* An encoded value under the tone curve: the logarithm of its light, and how fast that rises, over what sRGB does. */
+struct toned_value {
+    double log_light, basis[WEFT_TONE_TERMS], rise_basis[WEFT_TONE_TERMS];
+
+    template <typename T> T log_of(const T *tone) const
+    {
+        T value = T(log_light);
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            value += tone[k] * basis[k];
+        return value;
+    }
+
+    template <typename T> T rise_of(const T *tone) const
+    {
+        T rise = T(1);
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            rise += tone[k] * rise_basis[k];
+        return rise;
+    }
+};
+
+/* The error of the model is divided by the rise of the curve: so it is that of the value in the file. An error of light
+ * would vanish under a curve that is flat. */
 struct paper_residual {
     mounting mount;
-    double x, y, log_light[3], power[3][WEFT_TONE_TERMS], radius_squared, weight;
+    double x, y, radius_squared, weight;
+    toned_value value[3];
+    const double *usual_tone; /* whose rise makes errors of values those of light */
+    vec3 eye;
     bool is_ink;
 
     template <typename T>
     bool operator()(const T *unknown, const T *level, const T *tone, const T *vignetting, const T *ink, const T *beam,
-                    T *residual) const
+                    const T *aim, T *residual) const
     {
         T lamp[3];
         mount.place(unknown, lamp);
@@ -88,17 +122,36 @@ struct paper_residual {
         if (fall <= T(0.05))
             return false;
         T common = log(lamp[2]) + log(far_squared) - 1.5 * log(near_squared) + log(fall);
-        if (is_ink)
-            common += ink[0];
-        if (mount.is_flash)
+        if (is_ink) {
+            const T shine = 1.0 + ink[1] * lobe(lamp, dx, dy, sqrt(near_squared), exp(ink[2]));
+            if (shine <= T(0.1))
+                return false;
+            common += ink[0] + log(shine);
+        }
+        if (mount.is_flash) {
             common += mount.log_beam(unknown, beam, x, y);
+        } else {
+            const T ax = lamp[0] - aim[0], ay = lamp[1] - aim[1], az = lamp[2] * lamp[2];
+            const T along = ax * dx + ay * dy + az;
+            if (along <= T(0))
+                return false;
+            common += beam[0] * (log(along) - 0.5 * log((ax * ax + ay * ay + az) * near_squared));
+        }
         for (int c = 0; c < 3; c++) {
-            T value = T(log_light[c]);
-            for (int k = 0; k < WEFT_TONE_TERMS; k++)
-                value += tone[k] * power[c][k];
-            residual[c] = weight * (value - level[c] - common);
+            const T rise = value[c].rise_of(tone);
+            if (rise <= T(least_rise))
+                return false;
+            residual[c] = weight * value[c].rise_of(usual_tone) * (value[c].log_of(tone) - level[c] - common) / rise;
         }
         return true;
+    }
+
+    /* exp(-tan^2 / width^2) of the angle between the normal and the one that would mirror the lamp. */
+    template <typename T> T lobe(const T *lamp, const T &dx, const T &dy, const T &near, const T &width) const
+    {
+        const double ex = eye[0] - x, ey = eye[1] - y, away = std::sqrt(ex * ex + ey * ey + eye[2] * eye[2]);
+        const T hx = dx / near + ex / away, hy = dy / near + ey / away, hz = lamp[2] / near + eye[2] / away;
+        return exp(-(hx * hx + hy * hy) / (hz * hz * width * width));
     }
 };
 
@@ -204,17 +257,36 @@ struct power_residual {
     }
 };
 
-/* A place in two photographs that differ in exposure alone: the logarithms of its light differ by that of the ratio. */
+/* A place in two photographs that differ in exposure alone: the logarithms of its light differ by that of the ratio. An
+ * error of both values, as above. */
 struct pair_residual {
-    double difference[3], power[3][WEFT_TONE_TERMS], weight[3];
+    toned_value bright[3], dark[3];
+    double weight[3];
+    const double *usual_tone;
 
     template <typename T> bool operator()(const T *tone, const T *ratio, T *residual) const
     {
         for (int c = 0; c < 3; c++) {
-            T value = difference[c] - ratio[c];
-            for (int k = 0; k < WEFT_TONE_TERMS; k++)
-                value += tone[k] * power[c][k];
-            residual[c] = weight[c] * value;
+            const T rises[2] = {bright[c].rise_of(tone), dark[c].rise_of(tone)};
+            const double usual[2] = {bright[c].rise_of(usual_tone), dark[c].rise_of(usual_tone)};
+            if (rises[0] <= T(least_rise) || rises[1] <= T(least_rise))
+                return false;
+            const T rise =
+                sqrt((rises[0] * rises[0] + rises[1] * rises[1]) / (usual[0] * usual[0] + usual[1] * usual[1]));
+            residual[c] = weight[c] * (bright[c].log_of(tone) - dark[c].log_of(tone) - ratio[c]) / rise;
+        }
+        return true;
+    }
+};
+
+/* The coefficients of the tone curve are near zero, change slowly, and bend little. */
+struct smooth_residual {
+    template <typename T> bool operator()(const T *tone, T *residual) const
+    {
+        for (int k = 0; k < WEFT_TONE_TERMS; k++) {
+            residual[3 * k] = tone[k] / tone_deviation;
+            residual[3 * k + 1] = k < 1 ? T(0) : (tone[k] - tone[k - 1]) / tone_slope_deviation;
+            residual[3 * k + 2] = k < 2 ? T(0) : (tone[k] - 2.0 * tone[k - 1] + tone[k - 2]) / tone_bend_deviation;
         }
         return true;
     }

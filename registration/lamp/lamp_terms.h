@@ -12,15 +12,17 @@
 namespace lamps
 {
 
-/* Unknowns of one photograph: the lamp in units, and the logarithm of its level in three channels. */
+/* Unknowns of one photograph: the lamp in units, the logarithm of its level in three channels, and the place of the
+ * plate that it is held towards. */
 struct photograph_unknowns {
-    double lamp[3], level[3];
+    double lamp[3], level[3], aim[2];
 };
 
-/* Unknowns that all photographs share. */
+/* Unknowns that all photographs share. Of ink: logarithm of its reflectance over that of paper, shine, and the
+ * logarithm of its width. Of the beam of a lamp that is not fixed to the camera: the power alone. */
 struct shared_unknowns {
-    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3], flash[3],
-        beam[WEFT_BEAM_TERMS];
+    double tone[WEFT_TONE_TERMS], vignetting[2], ink[3], power, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3],
+        flash[3], beam[WEFT_BEAM_TERMS];
 };
 
 class lamp_terms
@@ -30,9 +32,15 @@ class lamp_terms
     lamp_terms(const weft_lamp_problem *given, const weft_lamp_solution *guess)
         : input(given), own((size_t)given->count), ratios((size_t)given->pair_count)
     {
-        shared.ink = std::log(guess->ink);
+        const double ink_known[3] = {std::log(input->target->ink_reflectance / input->target->paper_reflectance),
+                                     shine_mean, std::log(shine_width)};
+        std::copy_n(ink_known, 3, shared.ink);
+        std::copy_n(guess->tone, WEFT_TONE_TERMS, shared.tone);
+        std::copy_n(guess->tone, WEFT_TONE_TERMS, usual_tone);
         if (input->flash)
             std::copy_n(beam_mean, WEFT_BEAM_TERMS, shared.beam);
+        else
+            shared.beam[0] = beam_power_mean;
         for (int i = 0; i < input->count; i++)
             start(i, guess->place[i].position_mm);
         for (int i = 0; i < input->count; i++) {
@@ -49,6 +57,7 @@ class lamp_terms
 
   protected:
     const weft_lamp_problem *input;
+    double usual_tone[WEFT_TONE_TERMS] = {}; /* whose rise makes errors of values those of light */
     std::vector<photograph_unknowns> own;
     std::vector<vec3> ratios; /* of exposures: logarithms in three channels */
     shared_unknowns shared = {};
@@ -79,7 +88,7 @@ class lamp_terms
         const weft_lamp_evidence &evidence = input->evidence[i];
         const double squared = (double)weft_dot(lamp, lamp);
         photograph_unknowns &unknowns = own[(size_t)i];
-        unknowns = {{lamp.x / unit_mm, lamp.y / unit_mm, lamp.z / unit_mm}, {0, 0, 0}};
+        unknowns = {{lamp.x / unit_mm, lamp.y / unit_mm, lamp.z / unit_mm}, {0, 0, 0}, {0, 0}};
         for (int c = 0; c < 3; c++) {
             std::vector<double> level;
             for (int k = 0; k < evidence.paper.count; k++) {
@@ -87,7 +96,8 @@ class lamp_terms
                 const double *at = input->places->place[s.place];
                 const double dx = lamp.x - at[0], dy = lamp.y - at[1], near = dx * dx + dy * dy + lamp.z * lamp.z;
                 if (!input->places->is_ink[s.place] && s.light[c] > 0)
-                    level.push_back(std::log((double)s.light[c]) - std::log(lamp.z * squared) + 1.5 * std::log(near));
+                    level.push_back(toned(s.light[c]).log_of(shared.tone) - std::log(lamp.z * squared) +
+                                    1.5 * std::log(near));
             }
             if (level.empty())
                 continue;
@@ -96,19 +106,27 @@ class lamp_terms
         }
     }
 
-    /* Adds `sign` times the powers of the tone curve at a value; returns so much of the logarithm of its light. */
-    static double add_powers(float light, double sign, double power[WEFT_TONE_TERMS])
+    /* Of light that is decoded as sRGB. */
+    static toned_value toned(float light)
     {
-        double raised = sign, encoded = 2 * (double)weft_srgb_of_linear(light) - 1;
-        for (int k = 0; k < WEFT_TONE_TERMS; k++)
-            power[k] += raised *= encoded;
-        return sign * std::log((double)light);
+        toned_value value;
+        const double encoded = (double)weft_srgb_of_linear(light), step = 0.01 * encoded;
+        const double rise = std::log((double)weft_linear_of_srgb((float)(encoded + step)) /
+                                     (double)weft_linear_of_srgb((float)(encoded - step))) /
+                            (2 * step);
+        weft_tone_basis(encoded, value.basis, value.rise_basis);
+        for (double &basis : value.rise_basis)
+            basis /= rise;
+        value.log_light = std::log((double)light);
+        return value;
     }
 
     void add_paper(int i)
     {
         const weft_paper_samples &paper = input->evidence[i].paper;
         const double share = std::sqrt(std::min(1.0, independent_samples / std::max(1, 3 * paper.count)));
+        const weft_vec3 camera = weft_pose_camera_position(&input->evidence[i].pose);
+        const vec3 eye = {camera.x / unit_mm, camera.y / unit_mm, camera.z / unit_mm};
         for (int k = 0; k < paper.count; k++) {
             const weft_paper_sample &s = paper.sample[k];
             const bool is_ink = input->places->is_ink[s.place];
@@ -119,11 +137,13 @@ class lamp_terms
             residual.radius_squared = (double)s.radius_squared / input->corner_radius_squared;
             residual.is_ink = is_ink;
             residual.weight = share / (is_ink ? ink_deviation : paper_deviation);
+            residual.eye = eye;
+            residual.usual_tone = usual_tone;
             for (int c = 0; c < 3; c++)
-                residual.log_light[c] = add_powers(s.light[c], 1, residual.power[c]);
-            const auto *kept = terms.add<3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(
+                residual.value[c] = toned(s.light[c]);
+            const auto *kept = terms.add<3, 3, 3, WEFT_TONE_TERMS, 2, 3, WEFT_BEAM_TERMS, 2>(
                 residual, terms.cauchy(3 * share), lamp_of(i), own[(size_t)i].level, shared.tone, shared.vignetting,
-                &shared.ink, shared.beam);
+                shared.ink, shared.beam, own[(size_t)i].aim);
             if (!is_ink)
                 papers.emplace_back(kept, i);
         }
@@ -215,7 +235,7 @@ class lamp_terms
     void add_pair(const weft_exposure_pair &pair, double *ratio)
     {
         const weft_paper_samples &bright = input->evidence[pair.bright].paper, &dark = input->evidence[pair.dark].paper;
-        const double share = std::sqrt(independent_samples / (3 * std::max(bright.count, dark.count)));
+        const double share = std::sqrt(independent_pair_samples / (3 * std::max(bright.count, dark.count)));
         std::fill_n(ratio, 3, pair.log_ratio);
         for (int i = 0, k = 0; i < bright.count && k < dark.count;) {
             const weft_paper_sample &a = bright.sample[i], &b = dark.sample[k];
@@ -224,11 +244,12 @@ class lamp_terms
             if (a.place != b.place)
                 continue;
             pair_residual residual = {};
+            residual.usual_tone = usual_tone;
             for (int c = 0; c < 3; c++) {
                 const double rounding = rounding_deviation / (double)weft_srgb_of_linear(b.light[c]);
                 residual.weight[c] = std::min(1.0, share) / std::hypot(pair_deviation, rounding);
-                residual.difference[c] =
-                    add_powers(a.light[c], 1, residual.power[c]) + add_powers(b.light[c], -1, residual.power[c]);
+                residual.bright[c] = toned(a.light[c]);
+                residual.dark[c] = toned(b.light[c]);
             }
             terms.add<3, WEFT_TONE_TERMS, 3>(residual, terms.cauchy(3 * share), shared.tone, ratio);
         }
@@ -244,11 +265,11 @@ class lamp_terms
 
     void add_priors()
     {
-        terms.prior(shared.tone, tone_deviation);
+        terms.add<3 * WEFT_TONE_TERMS, WEFT_TONE_TERMS>(smooth_residual{}, nullptr, shared.tone);
         /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
         shared.vignetting[0] = -2 * input->corner_radius_squared;
         terms.prior<2>(shared.vignetting, {vignetting_deviation, vignetting_deviation});
-        terms.prior<1>(&shared.ink, {ink_prior_deviation});
+        terms.prior<3>(shared.ink, {ink_prior_deviation, shine_deviation, shine_width_deviation});
         for (auto &shift : shared.shift)
             terms.prior<2>(shift, {shift_deviation_mm / unit_mm, shift_deviation_mm / unit_mm});
         const double pin = pin_deviation_mm / unit_mm, flash = flash_deviation_mm / unit_mm;
@@ -257,10 +278,16 @@ class lamp_terms
             terms.prior(shared.beam, beam_deviation);
             terms.prior<3>(shared.flash, {flash, flash, flash});
         } else {
-            hold(shared.beam);
+            terms.prior<WEFT_BEAM_TERMS>(shared.beam, {beam_power_deviation, 1, 1, 1, 1});
         }
-        for (int i = 0; !input->flash && i < input->count; i++)
+        for (int i = 0; i < input->count; i++) {
+            if (input->flash) {
+                hold(own[(size_t)i].aim);
+                continue;
+            }
             terms.add<1, 3>(distance_residual{}, nullptr, lamp_of(i));
+            terms.prior<2>(own[(size_t)i].aim, {aim_deviation_mm / unit_mm, aim_deviation_mm / unit_mm});
+        }
         if (!input->tone_unknown)
             hold(shared.tone);
     }

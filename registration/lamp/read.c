@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 weft_file_range weft_file_range_of(const weft_exif *exif, double clipped_at)
 {
@@ -77,13 +78,30 @@ weft_tone_curve weft_tone_linear(void)
     return tone;
 }
 
-double weft_tone_bend(weft_tone_curve *tone, const double *term, int terms)
+void weft_tone_basis(double encoded, double value[WEFT_TONE_TERMS], double slope[WEFT_TONE_TERMS])
 {
-    double last = 0;
+    const int spans = WEFT_TONE_TERMS - 3;
+    double at = fmin(fmax(encoded, 0), 1) * spans;
+    int first = at < spans ? (int)at : spans - 1;
+    double t = at - first, u = 1 - t;
+    memset(value, 0, WEFT_TONE_TERMS * sizeof *value);
+    memset(slope, 0, WEFT_TONE_TERMS * sizeof *slope);
+    const double cubic[4] = {u * u * u, 3 * t * t * (t - 2) + 4, 3 * u * u * (u - 2) + 4, t * t * t};
+    const double square[4] = {-u * u, t * (3 * t - 4), u * (4 - 3 * u), t * t};
+    for (int k = 0; k < 4; k++) {
+        value[first + k] = cubic[k] / 6;
+        slope[first + k] = square[k] / 2 * spans;
+    }
+}
+
+double weft_tone_bend(weft_tone_curve *tone, const double term[WEFT_TONE_TERMS])
+{
+    double last = 0, value[WEFT_TONE_TERMS], slope[WEFT_TONE_TERMS];
     for (int i = 0; i <= WEFT_TONE_STEPS; i++) {
-        double power = 1, sum = 0, encoded = 2 * (i / (double)WEFT_TONE_STEPS) - 1;
-        for (int k = 0; k < terms; k++)
-            sum += term[k] * (power *= encoded);
+        double sum = 0;
+        weft_tone_basis(i / (double)WEFT_TONE_STEPS, value, slope);
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            sum += term[k] * value[k];
         double light = (double)tone->linear[i] * exp(sum);
         last = i ? fmax(last, light) : light;
         tone->linear[i] = (float)last;

@@ -7,6 +7,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* ---- The tone curve of a camera: from encoded values to values in proportion to light ---- */
 
 enum { WEFT_TONE_STEPS = 1024 };
@@ -20,9 +24,15 @@ typedef struct weft_tone_curve {
 weft_tone_curve weft_tone_srgb(void);
 weft_tone_curve weft_tone_linear(void);
 
-/* Multiplies the light of an encoded value v by exp(sum_k term[k] (2 v - 1)^(k + 1)), lets it never fall, and divides
- * it by what it has at 1, which is returned. Pure. */
-double weft_tone_bend(weft_tone_curve *tone, const double *term, int terms);
+/* Corrections of the logarithm of light: coefficients of cubic B-splines that are evenly spaced over encoded values. */
+enum { WEFT_TONE_TERMS = 16 };
+
+/* What every coefficient counts for at an encoded value within 0..1, and how that changes with it. Pure. */
+void weft_tone_basis(double encoded, double value[WEFT_TONE_TERMS], double slope[WEFT_TONE_TERMS]);
+
+/* Multiplies the light of every encoded value by the exponential of its correction, lets it never fall, and divides it
+ * by what it has at 1, which is returned. Pure. */
+double weft_tone_bend(weft_tone_curve *tone, const double term[WEFT_TONE_TERMS]);
 
 /* Light of an encoded value, which is held to 0..1: linear between the steps. Pure. */
 static inline float weft_tone_decode(const weft_tone_curve *tone, float encoded)
@@ -66,5 +76,9 @@ double weft_exposure_meant(double written);
 /* Time x sensitivity / f-number^2: time as meant; ISO 125 is 126; the f-number as written. 0 where the camera wrote
  * none. Pure. */
 double weft_exif_exposure(const weft_exif *exif);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

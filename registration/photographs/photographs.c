@@ -27,7 +27,7 @@ typedef struct work {
 weft_photographs_settings weft_photographs_defaults(void)
 {
     return (weft_photographs_settings){
-        weft_target_printed(50), 256, 256, 20, 30, false, false, 250.0 / 255, NULL, NULL, NULL};
+        weft_target_printed(50), 256, 256, 20, 30, false, false, false, 250.0 / 255, NULL, NULL, NULL};
 }
 
 void weft_photographs_free(weft_photograph_set *set)
@@ -180,7 +180,7 @@ static void leave_out_paperless(work *w)
 /* Levels follow the curve, which ends at 1. */
 static void correct_tone(weft_photograph_set *set)
 {
-    double full = weft_tone_bend(&set->tone, set->lamps.tone, WEFT_TONE_TERMS);
+    double full = weft_tone_bend(&set->tone, set->lamps.tone);
     for (int i = 0; i < set->count; i++) {
         for (int c = 0; c < 3; c++)
             set->photograph[i].lamp.level[c] /= full;
@@ -354,6 +354,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(set);
     weft_photographs_leave_out_darker(set);
+    WEFT_TRY(weft_photographs_check_light(w->folder, w->settings, set, error));
     WEFT_TRY(weft_photographs_note(set, error));
     if (!w->settings->colour)
         WEFT_TRY(weft_photographs_note_colours(set, error));

@@ -15,6 +15,7 @@ typedef struct weft_photographs_settings {
     double ball_diameter_mm;       /* 0: no balls stand on the sheet */
     double pin_height_mm;          /* to the top of its head; 0: no pin stands on the sheet */
     bool flash;                    /* the lamp is fixed to the camera */
+    bool force;                    /* write a dataset although the photographs contradict each other */
     bool linear;                   /* integer files hold linear values; else a tone curve is found */
     double clipped_at;             /* encoded value of an integer file, 0..1, from which a sample counts as clipped */
     const weft_camera *lens;       /* NULL: found in the photographs */

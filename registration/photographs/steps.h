@@ -128,9 +128,14 @@ double weft_photographs_variance(const weft_photograph_set *set, const weft_phot
 weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int *index, int count, double pitch_mm,
                                        weft_dataset_writer *writer, weft_error *error);
 
-/* Adds a line to the notes of `set` where balls or pin contradict the paper, and where the tone curve leaves dark
- * cloth open. Errors: WEFT_SYSTEM for memory. */
+/* Adds a line to the notes of `set` where the tone curve leaves dark cloth open. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_photographs_note(weft_photograph_set *set, weft_error *error);
+
+/* Refuses photographs whose light contradicts itself: ink and paper that no printer makes, bare paper that no lamp
+ * lights so, highlights or shadows of the pin that lie elsewhere than the lamp makes them. settings->force makes a note
+ * of each instead. Errors: WEFT_BAD_INPUT naming the folder and the contradiction; WEFT_SYSTEM for memory. */
+weft_code weft_photographs_check_light(const char *folder, const weft_photographs_settings *settings,
+                                       weft_photograph_set *set, weft_error *error);
 
 /* Refuses photographs that all show the cloth from one side under one light, within 3 degrees. Errors: WEFT_BAD_INPUT
  * naming the folder. Pure. */

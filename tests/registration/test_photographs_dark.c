@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { SIDE = 600 };
 
@@ -88,12 +89,51 @@ static void dark_texels_are_masked_one_by_one(void **state)
     assert_int_equal(photograph.clipped_texels, 1);
 }
 
+/* Ink that is nearly as bright as paper, paper that no lamp lights, highlights of other lamps. */
+static void light_that_contradicts_itself_is_refused(void **state)
+{
+    (void)state;
+    weft_photographs_settings settings = weft_photographs_defaults();
+    const double usual = settings.target.ink_reflectance / settings.target.paper_reflectance;
+    const struct {
+        double ink, residual, ball_misfit, pin_misfit;
+        const char *names;
+    } light[] = {{usual, 0.01, 1, 1, NULL},
+                 {0.71, 0.01, 1, 1, "the ink comes out as 0.710 of the paper"},
+                 {0.4 * usual, 0.01, 1, 1, "the ink comes out as 0.024 of the paper"},
+                 {usual, 0.1, 1, 1, "bare paper is 10 % off"},
+                 {usual, 0.01, 6, 1, "highlights on the balls lie 6"},
+                 {usual, 0.01, 1, 6, "shadows of the pin lie 6"}};
+    for (size_t i = 0; i < sizeof light / sizeof *light; i++) {
+        weft_photographs_photograph photograph = {.name = "a", .lamp = {.residual = light[i].residual}};
+        weft_photograph_set set = {.count = 1, .photograph = &photograph, .tone_found = true};
+        weft_error error = {0};
+        set.lamps.ink = light[i].ink;
+        set.lamps.ball_misfit = light[i].ball_misfit;
+        set.lamps.pin_misfit = light[i].pin_misfit;
+        settings.force = false;
+        weft_code code = weft_photographs_check_light("felt", &settings, &set, &error);
+        assert_int_equal(code == WEFT_OK, !light[i].names);
+        if (!light[i].names)
+            continue;
+        assert_int_equal(weft_class_of(code), WEFT_BAD_INPUT);
+        assert_non_null(strstr(error.message, light[i].names));
+        assert_non_null(strstr(error.message, "--force"));
+        settings.force = true;
+        expect_ok(weft_photographs_check_light("felt", &settings, &set, &error), &error);
+        assert_int_equal(set.notes.count, 1);
+        assert_non_null(strstr(set.notes.line[0], light[i].names));
+        weft_lines_free(&set.notes);
+    }
+}
+
 int test_photographs_dark(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paper_below_five_steps_of_its_file_is_not_looked_at),
         cmocka_unit_test(the_limit_follows_the_bits_of_the_file),
         cmocka_unit_test(dark_texels_are_masked_one_by_one),
+        cmocka_unit_test(light_that_contradicts_itself_is_refused),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }

@@ -16,7 +16,7 @@
 
 enum { SCENES = 8, TWICE = 4, PHOTOGRAPHS = SCENES + TWICE, COLUMNS = 17, PLACES = COLUMNS * COLUMNS };
 
-static const double pitch_mm = 9, paper = 0.85, ink = 0.05;
+static const double pitch_mm = 9, paper = 0.85, ink = 0.05, beam_power = 1.5;
 
 static const double lamp_mm[SCENES][3] = {{300, 200, 400}, {-250, 350, 450}, {-420, -60, 330}, {100, -400, 380},
                                           {60, 90, 500},   {350, -260, 300}, {-90, 520, 420},  {-300, -330, 520}};
@@ -54,13 +54,15 @@ static void photograph(scene *s, int i, weft_vec3 lamp, weft_pose pose, double e
     weft_lamp_evidence *e = &s->evidence[i];
     *e = (weft_lamp_evidence){.pose = pose, .exposure = exposure, .paper = {PLACES, s->sample[i]}};
     weft_vec3 eye = weft_pose_camera_position(&pose);
+    /* A torch in the hand is held towards some place near the middle. */
+    weft_vec3 axis = weft_unit(weft_subtract(lamp, weft_vec3_of(20 * (i % 3) - 20, 15 * (i % 2), 0)));
     s->lamp[i] = lamp;
     for (int k = 0; k < PLACES; k++) {
         weft_vec3 at = weft_vec3_of(s->place[k][0], s->place[k][1], 0), to = weft_subtract(lamp, at);
         weft_vec3 ray = weft_unit(weft_subtract(at, eye)), ahead = weft_unit(weft_scale(eye, -1));
-        double off_axis = weft_dot(ray, ahead), far = weft_length(to);
-        double value =
-            (s->is_ink[k] ? ink : paper) * lamp.z / (far * far * far) * exposure * (1 + error) * pow(off_axis, 4);
+        double off_axis = weft_dot(ray, ahead), far = weft_length(to), beam = weft_dot(weft_unit(to), axis);
+        double value = (s->is_ink[k] ? ink : paper) * lamp.z / (far * far * far) * exposure * (1 + error) *
+                       pow(off_axis, 4) * pow(beam, beam_power);
         s->sample[i][k] = (weft_paper_sample){.place = k, .radius_squared = (float)(1 / (off_axis * off_axis) - 1)};
         for (int c = 0; c < 3; c++)
             s->sample[i][k].light[c] = decoded(value, 3 * (i * PLACES + k) + c);
@@ -123,10 +125,9 @@ static weft_lamp_problem problem_of(const scene *s, int count)
 /* Light of an encoded value under the curve found, but for a factor. */
 static double light_of(const weft_lamp_solution *found, double encoded)
 {
-    double power = 1, sum = log((double)weft_linear_of_srgb((float)encoded));
-    for (int k = 0; k < WEFT_TONE_TERMS; k++)
-        sum += found->tone[k] * (power *= 2 * encoded - 1);
-    return exp(sum);
+    weft_tone_curve curve = weft_tone_srgb();
+    weft_tone_bend(&curve, found->tone);
+    return (double)weft_tone_decode(&curve, (float)encoded);
 }
 
 /* Where a highlight on the first ball lies that throws the ray of the camera back at just above the sheet. */
@@ -201,13 +202,41 @@ static void exposures_tell_the_curve_and_so_the_lamps(void **state)
         double times = (double[]){2, 5, 10, 20, 40}[i];
         double ratio = light_of(&found, film(0.45)) / light_of(&found, film(0.45 / times)) / times;
         printf("1/%.0f of the light: %.3f\n", times, ratio);
-        assert_near(ratio, 1, i < 4 ? 0.03 : 0.05);
+        assert_near(ratio, 1, 0.02);
     }
-    assert_true(found.dark_error > 0.002 && found.dark_error < 0.03);
+    assert_true(found.dark_error > 0.002 && found.dark_error < 0.04);
     for (int i = 0; i < PHOTOGRAPHS; i++) {
         double off = weft_deg_of_rad(acos(weft_dot(weft_unit(place[i].position_mm), weft_unit(s->lamp[i]))));
         printf("lamp %d: %.2f degrees off (%.2f)\n", i, off, place[i].uncertainty_deg);
-        assert_true(off < 1.5 && off < 3 * place[i].uncertainty_deg);
+        assert_true(off < 2 && off < 3 * place[i].uncertainty_deg);
+    }
+    free(s);
+}
+
+/* Paper alone, with grain of 1.5 %: a curve that is nearly flat makes the grain small, but not the paper right. */
+static void grain_does_not_flatten_the_curve(void **state)
+{
+    (void)state;
+    scene *s = photograph_all();
+    weft_lamp_place place[SCENES];
+    weft_lamp_solution found = {.place = place};
+    weft_lamp_problem problem = problem_of(s, SCENES);
+    weft_error error = {0};
+    for (int i = 0; i < SCENES; i++) {
+        for (int k = 0; k < PLACES; k++) {
+            double grain = 0.015 * (sin(2.9 * k + 1.3 * i) + sin(7.7 * k + 5.1 * i));
+            for (int c = 0; c < 3; c++)
+                s->sample[i][k].light[c] *= (float)(1 + grain);
+        }
+    }
+    weft_lamp_guess(&problem, &found);
+    assert_int_equal(weft_lamp_solve(&problem, &found, &error), WEFT_OK);
+    printf("ink %.4f of paper\n", found.ink);
+    assert_near(found.ink / (ink / paper), 1, 0.25);
+    for (int i = 0; i < SCENES; i++) {
+        double off = weft_deg_of_rad(acos(weft_dot(weft_unit(place[i].position_mm), weft_unit(s->lamp[i]))));
+        printf("lamp %d: %.2f degrees off (%.2f)\n", i, off, place[i].uncertainty_deg);
+        assert_true(off < 6 && off < 2.5 * place[i].uncertainty_deg);
     }
     free(s);
 }
@@ -312,6 +341,7 @@ int test_photographs_series(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),
+        cmocka_unit_test(grain_does_not_flatten_the_curve),
         cmocka_unit_test(a_highlight_too_low_for_the_pin_stops_nothing),
         cmocka_unit_test(other_lamps_are_no_series),
         cmocka_unit_test(round_numbers_are_thirds_of_a_stop),
