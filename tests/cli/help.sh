@@ -40,7 +40,7 @@ expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv --o
 expect_error 2 "would overwrite" render "$(dirname "$0")/../golden/good/material/example.weft" --environment same.exr -o ./same.exr
 expect_error 2 "needs -o NAME.pdf or NAME.svg" target
 expect_error 2 "the largest that fits is 51.6" target -o no.pdf --opening 52
-expect_error 2 "--paper needs A4, letter or WxH" target -o no.pdf --paper A5
+expect_error 2 "--paper needs A4, A3, A5, letter, legal, tabloid or WxH" target -o no.pdf --paper B9
 expect_error 2 "does not end in .pdf or .svg" target -o no.png
 expect_error 2 "--board has no opening" target -o no.pdf --board --opening 40
 expect_error 2 "needs photographs, --board BOARD" lens -o no.json --board plate:50
