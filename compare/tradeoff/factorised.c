@@ -18,8 +18,8 @@ static const struct {
 } table[WEFT_FACTORISED_KINDS] = {
     {"full matrix, linear", false, false, {16, 0, 0}},
     {"full matrix, log luminance", true, false, {16, 0, 0}},
-    {"a matrix a channel, linear", false, true, {5, 6, 5}},
-    {"a matrix a channel, log luminance", true, true, {8, 4, 4}},
+    {"matrix per channel, linear", false, true, {5, 6, 5}},
+    {"matrix per channel, log luminance", true, true, {8, 4, 4}},
 };
 
 const char *weft_factorised_name(weft_factorised_kind kind)

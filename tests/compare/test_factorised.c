@@ -149,7 +149,7 @@ static void rows_are_measured_and_weighed(void **state)
     expect_ok(weft_price_shop_open(dataset, SIDE, scratch, NULL, &shop, &error), &error);
     expect_ok(weft_price_ask(shop, matrices, &price, &error), &error);
     assert_float_equal(price.bytes, 2 * 16 * (SIDE * SIDE + 3 * layout->image_count), 0);
-    expect_ok(weft_price_ask(shop, find(model, count, "a matrix a channel, linear"), &price, &error), &error);
+    expect_ok(weft_price_ask(shop, find(model, count, "matrix per channel, linear"), &price, &error), &error);
     assert_float_equal(price.bytes, 2 * 16 * (SIDE * SIDE + layout->image_count), 0);
     weft_price_shop_close(shop);
     weft_dataset_close(dataset);
