@@ -124,46 +124,58 @@ static weft_code read_png(source *s, weft_colour_tags *tags)
 
 /* ---- JPEG ---- */
 
-/* Scans the data that begin at a place up to the next marker for a cluster of a disk that was never written: codes of
- * Huffman leave no such run of zeros, but a decoder does not mind one. */
-static weft_code check_scan(const source *s, uint64_t place)
+enum { END_OF_IMAGE = 0xd9 };
+
+/* What the data of a JPEG hold, from its first scan on. */
+typedef struct scans {
+    int count;
+    size_t zeros; /* in the longest run of the first scan */
+} scans;
+
+static weft_code read_scans(const source *s, uint64_t place, scans *found)
 {
-    enum { LONGEST = 128 };
+    enum { START_OF_SCAN = 0xda, FIRST_RESTART = 0xd0, LAST_RESTART = 0xd7 };
     uint8_t block[16384], last = 1;
     size_t zeros = 0;
+    *found = (scans){.count = 1};
     for (size_t count; place < s->size; place += count) {
         count = s->size - place < sizeof block ? (size_t)(s->size - place) : sizeof block;
         WEFT_TRY(fetch(s, place, block, count));
         for (size_t i = 0; i < count; last = block[i++]) {
-            if (last == 0xff && block[i] != 0 && (block[i] < 0xd0 || block[i] > 0xd7))
-                return WEFT_OK;
             zeros = block[i] ? 0 : zeros + 1;
-            if (zeros >= LONGEST)
-                return damaged(s, "a part of its data was replaced by zeros");
+            if (found->count == 1 && zeros > found->zeros)
+                found->zeros = zeros;
+            bool is_marker = last == 0xff && block[i] != 0 && (block[i] < FIRST_RESTART || block[i] > LAST_RESTART);
+            found->count += is_marker && block[i] == START_OF_SCAN;
+            if (is_marker && block[i] == END_OF_IMAGE)
+                return WEFT_OK;
         }
     }
     return WEFT_OK;
 }
 
-/* Of a baseline JPEG: progressive ones may well refine by zeros. The decoder finds other damage. */
+/* A cluster of a disk that was never written is all zeros. Codes of Huffman leave no such run in a sequential JPEG, but
+ * a decoder does not mind one; progressive ones may well refine by zeros. Each scan of a progressive one costs as much
+ * as the picture is large, however short it is. The decoder finds other damage. */
 static weft_code read_jpeg(source *s)
 {
-    enum { BASELINE = 0xc0, EXTENDED = 0xc1, START_OF_SCAN = 0xda };
+    enum { BASELINE = 0xc0, EXTENDED = 0xc1, START_OF_SCAN = 0xda, MOST_ZEROS = 127, MOST_SCANS = 200 };
     bool is_sequential = false;
-    uint64_t place = 2;
+    scans found = {0};
     s->big_endian = true;
-    for (;;) {
+    for (uint64_t place = 2; found.count == 0 && holds(s, place, 4);) {
         uint8_t head[4];
-        if (!holds(s, place, sizeof head))
-            return WEFT_OK;
         WEFT_TRY(fetch(s, place, head, sizeof head));
         if (head[0] != 0xff)
             return WEFT_OK;
         place += 2 + number_of(s, head + 2, 2);
         is_sequential = is_sequential || head[1] == BASELINE || head[1] == EXTENDED;
         if (head[1] == START_OF_SCAN)
-            return is_sequential ? check_scan(s, place) : WEFT_OK;
+            WEFT_TRY(read_scans(s, place, &found));
     }
+    if (is_sequential && found.zeros > MOST_ZEROS)
+        return damaged(s, "a part of its data was replaced by zeros");
+    return found.count <= MOST_SCANS ? WEFT_OK : damaged(s, "it has more scans than any picture needs");
 }
 
 /* ---- TIFF ---- */
@@ -394,26 +406,37 @@ static weft_code fetch_name(const source *s, uint64_t *place, char name[256])
     return damaged(s, "its header is none");
 }
 
+/* The attributes of one header, from *place to what follows it; *is_empty: there are none. */
+static weft_code read_exr_header(const source *s, uint64_t *place, bool *is_empty)
+{
+    char name[256], type[256];
+    for (*is_empty = true;; *is_empty = false) {
+        uint64_t size;
+        WEFT_TRY(fetch_name(s, place, name));
+        if (!name[0])
+            return WEFT_OK;
+        WEFT_TRY(fetch_name(s, place, type));
+        WEFT_TRY(fetch_number(s, *place, 4, &size));
+        *place += 4;
+        if (!holds(s, *place, size))
+            return damaged(s, "its header ends too early");
+        *place += size;
+    }
+}
+
 /* The library takes a size for true before it reads what is there. */
 static weft_code read_exr(source *s)
 {
-    enum { DEEP = 0x800 };
-    uint64_t flags, size, place = 8;
-    char name[256], type[256];
+    enum { DEEP = 0x800, PARTS = 0x1000 };
+    uint64_t flags, place = 8;
+    bool is_empty;
     WEFT_TRY(fetch_number(s, 4, 4, &flags));
     if (flags & DEEP)
         return weft_fail(s->error, WEFT_NOT_SUPPORTED, "image '%s' is a deep OpenEXR image: flatten it", s->path);
-    for (;;) {
-        WEFT_TRY(fetch_name(s, &place, name));
-        if (!name[0])
-            return WEFT_OK;
-        WEFT_TRY(fetch_name(s, &place, type));
-        WEFT_TRY(fetch_number(s, place, 4, &size));
-        place += 4;
-        if (!holds(s, place, size))
-            return damaged(s, "its header ends too early");
-        place += size;
-    }
+    do
+        WEFT_TRY(read_exr_header(s, &place, &is_empty));
+    while ((flags & PARTS) && !is_empty);
+    return WEFT_OK;
 }
 
 /* ---- HEIF ---- */

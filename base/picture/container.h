@@ -20,9 +20,9 @@ typedef enum weft_container {
 
 /* Reads the structure of a file, not its pixels:
  *   - PNG (3rd edition): length and checksum of each chunk that pixels need; the chunks cICP, sRGB, gAMA and cHRM;
- *   - JPEG: whether data of a sequential one were replaced by zeros;
+ *   - JPEG: whether data of a sequential one were replaced by zeros; how many scans a progressive one has;
  *   - TIFF (6.0, BigTIFF) and camera raw on top of it: whether strips and tiles lie within the file;
- *   - OpenEXR: whether each attribute of the first header lies within the file;
+ *   - OpenEXR: whether each attribute of its headers lies within the file;
  *   - HEIF (ISO 23008-12): whether each box does; the colours of the primary picture;
  *   - RAF: whether its sections do.
  * Sets those members of `tags` of which only the container knows, and a profile of HEIF; the caller frees them. Nothing

@@ -66,6 +66,23 @@ weft_code weft_exr_colour_channels(const OIIO::ImageSpec &spec, const char *path
                                    names_of(spec).c_str());
 }
 
+weft_code weft_exr_grey_channel(const OIIO::ImageSpec &spec, const char *path, int *channel, weft_error *error)
+{
+    static const char *const others[] = {"A", "alpha", "Z", "ZBack", "depth"};
+    int count = 0;
+    for (int c = spec.nchannels - 1; c >= 0; c--) {
+        const std::string &name = spec.channelnames[size_t(c)];
+        const std::string letter = name.substr(name.rfind('.') + 1);
+        if (std::any_of(std::begin(others), std::end(others), [&](const char *o) { return is_named(letter, o); }))
+            continue;
+        *channel = c;
+        count++;
+    }
+    return count == 1 ? WEFT_OK
+                      : weft_fail(error, WEFT_BAD_INPUT, "image '%s' has no channels R, G, B, nor a grey one: %s", path,
+                                  names_of(spec).c_str());
+}
+
 weft_code weft_exr_show_window(const OIIO::ImageSpec &spec, const char *path, weft_image *image, weft_error *error)
 {
     /* Both lie anywhere within 31 bits. */

@@ -76,8 +76,8 @@ weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *ima
 {
     const OIIO::ImageSpec &spec = input.spec();
     int first = 0, channels = spec.nchannels < 3 ? 1 : 3;
-    if (channels == 3 && is_exr(input))
-        WEFT_TRY(weft_exr_colour_channels(spec, path, &first, error));
+    if (is_exr(input))
+        WEFT_TRY((channels == 3 ? weft_exr_colour_channels : weft_exr_grey_channel)(spec, path, &first, error));
     if (is_raw(input))
         WEFT_TRY(weft_raw_check_packing(path, error));
     size_t pixel_count = size_t(spec.width) * size_t(spec.height);

@@ -39,6 +39,9 @@ weft_code weft_raw_check_light(const weft_image *image, const char *path, weft_e
  * WEFT_BAD_INPUT, naming the channels, where there are none, or more than one layer of them. */
 weft_code weft_exr_colour_channels(const OIIO::ImageSpec &spec, const char *path, int *first, weft_error *error);
 
+/* The only channel of one or two that is neither alpha nor depth. Errors: as above. */
+weft_code weft_exr_grey_channel(const OIIO::ImageSpec &spec, const char *path, int *channel, weft_error *error);
+
 /* Turns the pixels that are stored (the data window) into those that are shown (the display window): what lies outside
  * is cut off, what is not stored is NaN, and the image partial. Errors: WEFT_DAMAGED where nothing is stored of what is
  * shown; WEFT_SYSTEM for memory; then the picture is as it was. */

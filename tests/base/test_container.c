@@ -411,6 +411,14 @@ static void a_jpeg_that_is_not_whole_is_refused(void **state)
         assert_int_equal(weft_container_read("a.jpg", &container, &tags, NULL), WEFT_DAMAGED);
         assert_refused("a.jpg", "replaced by zeros");
     }
+    /* Scans that say nothing, each of which a decoder would go through. */
+    bytes many = {.count = 0};
+    put(&many, "\xff\xd8\xff\xc2\0\13\10\20\0\20\0\1\1\21\0", 15);
+    for (int i = 0; i < 500; i++)
+        put(&many, "\xff\xda\0\10\1\1\0\1\5\0\x7f", 11);
+    put(&many, "\xff\xd9", 2);
+    save(&many, "many.jpg");
+    assert_refused("many.jpg", "more scans");
     /* The end alone, and the data cut out before it. */
     memcpy(file.data + whole / 2, file.data + whole - 2, 2);
     file.count = whole / 2 + 2;

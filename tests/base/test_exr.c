@@ -175,6 +175,10 @@ static void colours_are_found_by_their_names(void **state)
     assert_colour(2, 1, 0);
     write_exr(1, (const char *const[]){"Y"}, small, small);
     assert_colour(0, 0, 0);
+    write_exr(2, (const char *const[]){"A", "Y"}, small, small);
+    assert_colour(1, 1, 1);
+    write_exr(2, (const char *const[]){"left.Y", "left.Z"}, small, small);
+    assert_colour(0, 0, 0);
 }
 
 static void the_picture_is_what_no_layer_holds(void **state)
@@ -203,6 +207,10 @@ static void what_is_no_picture_is_refused_and_named(void **state)
     assert_refused("N.X, N.Y, N.Z");
     write_exr(3, (const char *const[]){"B", "G", "Z"}, small, small);
     assert_refused("no channels R, G, B");
+    write_exr(1, (const char *const[]){"Z"}, small, small);
+    assert_refused("nor a grey one: Z");
+    write_exr(2, (const char *const[]){"N.X", "N.Y"}, small, small);
+    assert_refused("nor a grey one: N.X, N.Y");
 }
 
 static void what_is_shown_counts_not_what_is_stored(void **state)
@@ -257,6 +265,12 @@ static void a_header_that_ends_too_early_is_refused(void **state)
         assert_int_equal(weft_write_file(path, file.data, count, NULL), WEFT_OK);
         assert_refused("ends too early");
     }
+    /* Of many parts: the second header counts, too. */
+    bytes parts = file;
+    parts.data[5] |= 16;
+    put_attribute(&parts, "comments", "string", 0x7fffffff);
+    assert_int_equal(weft_write_file(path, parts.data, parts.count, NULL), WEFT_OK);
+    assert_refused("header ends too early");
     const uint32_t large = 0x7fffffff;
     memcpy(file.data + 8 + strlen("channels") + 1 + strlen("chlist") + 1, &large, 4);
     assert_int_equal(weft_write_file(path, file.data, file.count, NULL), WEFT_OK);
