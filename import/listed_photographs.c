@@ -4,6 +4,7 @@
 #include "base/text/csv.h"
 #include "base/text/image_list.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,13 +52,32 @@ static weft_code add_row(const char *folder, const weft_csv *table, int row, con
     return weft_collection_add_far(collection, name, missing, &angles, error);
 }
 
+/* Radians are small, and no rig turns through six degrees alone. */
+static weft_code ask_for_radians(const weft_csv *table, const int column[COLUMN_COUNT], weft_collection *collection,
+                                 weft_error *error)
+{
+    const int fewest = 4;
+    double largest = 0, angle;
+    for (int row = 0; row < table->row_count; row++) {
+        for (int i = 0; i < 4; i++) {
+            WEFT_TRY(weft_csv_number(table, row, column[ANGLE_COLUMNS + i], &angle, error));
+            largest = fmax(largest, fabs(angle));
+        }
+    }
+    if (table->row_count < fewest || largest == 0 || largest > 2 * WEFT_PI + 0.01)
+        return WEFT_OK;
+    return weft_lines_add(&collection->notes, error,
+                          "'%s': its largest angle is %.3g degrees: if its angles are radians, convert them",
+                          table->path, largest);
+}
+
 static weft_code add_rows(const char *folder, const weft_csv *table, weft_collection *collection, weft_error *error)
 {
     int column[COLUMN_COUNT];
     WEFT_TRY(find_columns(table, column, error));
     for (int row = 0; row < table->row_count; row++)
         WEFT_TRY(add_row(folder, table, row, column, collection, error));
-    return WEFT_OK;
+    return ask_for_radians(table, column, collection, error);
 }
 
 static int by_text(const void *a, const void *b)

@@ -156,6 +156,31 @@ static void lights_and_views_that_were_exchanged_are_told(void **state)
         fail_msg("'%s'", text);
 }
 
+static void radians_are_asked_for(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    char table[2048] = "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n";
+    for (int i = 0; i < 6; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%02d.exr", i);
+        folder_put_grey(&folder, name, 4, 4, 0.3f);
+        snprintf(table + strlen(table), sizeof table - strlen(table), "%s,%g,%g,0.5,3.1\n", name, 0.2 * (i + 1),
+                 i * 1.0);
+    }
+    folder_put_text(&folder, "directions.csv", table);
+    weft_import_options options = weft_import_defaults();
+    weft_import_report report;
+    assert_int_equal(weft_import(folder.path, folder.dataset, &options, NULL, &report, NULL), WEFT_OK);
+    bool is_asked = false;
+    for (int i = 0; i < report.notes.count; i++)
+        is_asked =
+            is_asked || strstr(report.notes.line[i], "its largest angle is 5 degrees: if its angles are radians");
+    assert_true(is_asked);
+    weft_import_report_free(&report);
+    folder_remove(&folder);
+}
+
 static void normals_of_a_ball_for_lamps_are_told(void **state)
 {
     (void)state;
@@ -202,6 +227,7 @@ int test_import_plausibility(void)
         cmocka_unit_test(what_is_sound_says_nothing),
         cmocka_unit_test(a_cosine_too_many_or_too_few_is_told),
         cmocka_unit_test(lights_and_views_that_were_exchanged_are_told),
+        cmocka_unit_test(radians_are_asked_for),
         cmocka_unit_test(normals_of_a_ball_for_lamps_are_told),
         cmocka_unit_test(near_lamps_are_told_with_their_distance),
         cmocka_unit_test(a_surface_that_bulges_is_not_taken_for_near_lamps),
