@@ -23,6 +23,7 @@ typedef struct weft_colour_tags {
     bool is_uncalibrated;  /* Exif: not sRGB; cameras say so of Adobe RGB */
     bool is_grey;          /* one channel */
     bool is_float, is_raw; /* half or float samples; camera raw */
+    int turned_as;         /* of HEIF: the Exif orientation by which its decoder turns the picture; 0: it does not */
     bool has_more;         /* pictures than the first, which is the one that is read */
     int bits;              /* of a sample in memory */
     char model[16];        /* of what is neither RGB nor grey: "CMYK", "CIELAB" */

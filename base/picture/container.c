@@ -507,7 +507,17 @@ static weft_code read_colour_box(const source *s, const box *colour, weft_colour
     return fetch(s, colour->place + 4, tags->profile, tags->profile_size);
 }
 
-/* The colours among the properties of one item (14496-12, ItemPropertyAssociationBox). */
+/* Quarters of a turn, counterclockwise (23008-12, 6.5.10), as Exif has them. */
+static weft_code read_turn_box(const source *s, const box *turn, weft_colour_tags *tags)
+{
+    static const int orientation[] = {0, 8, 3, 6};
+    uint64_t quarters;
+    WEFT_TRY(fetch_number(s, turn->place, 1, &quarters));
+    tags->turned_as = orientation[quarters & 3];
+    return WEFT_OK;
+}
+
+/* Colours and turn among the properties of one item (14496-12, ItemPropertyAssociationBox). */
 static weft_code read_properties(const source *s, const box *list, const box *link, uint64_t item,
                                  weft_colour_tags *tags)
 {
@@ -529,6 +539,8 @@ static weft_code read_properties(const source *s, const box *list, const box *li
             WEFT_TRY(find_box(s, list, 0, "", index, &property));
             if (strcmp(property.type, "colr") == 0)
                 WEFT_TRY(read_colour_box(s, &property, tags));
+            else if (strcmp(property.type, "irot") == 0)
+                WEFT_TRY(read_turn_box(s, &property, tags));
         }
         if (id == item)
             break;

@@ -23,7 +23,7 @@ typedef enum weft_container {
  *   - JPEG: whether data of a sequential one were replaced by zeros; how many scans a progressive one has;
  *   - TIFF (6.0, BigTIFF) and camera raw on top of it: whether strips and tiles lie within the file;
  *   - OpenEXR: whether each attribute of its headers lies within the file;
- *   - HEIF (ISO 23008-12): whether each box does; the colours of the primary picture;
+ *   - HEIF (ISO 23008-12): whether each box does; colours and turn of the primary picture;
  *   - RAF: whether its sections do.
  * Sets those members of `tags` of which only the container knows, and a profile of HEIF; the caller frees them. Nothing
  * is said of other files. Errors: WEFT_DAMAGED for a file that was cut short or fails a checksum, WEFT_NOT_SUPPORTED

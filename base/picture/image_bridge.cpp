@@ -11,6 +11,7 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
@@ -119,12 +120,29 @@ weft_code check_size(const OIIO::ImageInput &input, const char *path, weft_error
     return WEFT_OK;
 }
 
+/* A decoder of HEIF hands over the picture as it is shown. Where a lens is looked for, the pixels must lie as the
+ * sensor read them, and the orientation says the rest, as of a JPEG. */
+weft_code turn_back(int turned_as, weft_image *image, weft_exif *exif, weft_error *error)
+{
+    constexpr int clockwise = 6, counterclockwise = 8, exchanged = 5;
+    if (turned_as == 0)
+        return WEFT_OK;
+    if (exif) {
+        exif->orientation = turned_as;
+        if (turned_as >= exchanged)
+            std::swap(exif->width, exif->height);
+    }
+    int back = turned_as == clockwise ? counterclockwise : turned_as == counterclockwise ? clockwise : turned_as;
+    return image ? weft_image_turn(image, back, error) : WEFT_OK;
+}
+
 weft_code read_picture(const char *path, weft_image *image, weft_image_kind *kind, weft_exif *exif,
                        weft_colour_tags *tags, weft_error *error)
 {
     weft_code code;
     own_tags own;
-    auto input = weft_image_open(path, tags ? tags : &own.tags, &code, error);
+    weft_colour_tags *told = tags ? tags : &own.tags;
+    auto input = weft_image_open(path, told, &code, error);
     WEFT_TRY(code);
     WEFT_TRY(check_size(*input, path, error));
     if (kind)
@@ -133,7 +151,9 @@ weft_code read_picture(const char *path, weft_image *image, weft_image_kind *kin
         weft_exif_of(*input, path, exif);
     if (image)
         WEFT_TRY(read_floats(*input, path, image, error));
-    code = tags ? weft_colour_tags_of(*input, path, tags, error) : WEFT_OK;
+    code = turn_back(told->turned_as, image, exif, error);
+    if (code == WEFT_OK && tags)
+        code = weft_colour_tags_of(*input, path, tags, error);
     if (code != WEFT_OK && image)
         weft_image_free(image);
     return code;

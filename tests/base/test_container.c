@@ -259,12 +259,12 @@ static void put_box(bytes *file, const char *type, const void *data, size_t size
     end_box(file, begin);
 }
 
-/* Item 2 is the picture. Its properties are 1 and 2; 3 is another's. */
+/* Item 2 is the picture. Its properties are 1, 2 and 4; 3 and 5 are another's. */
 static void make_heif(bytes *file, bool has_profile)
 {
     static const uint8_t nclx[] = {'n', 'c', 'l', 'x', 0, 9, 0, 16, 0, 9, 0x80};
     static const uint8_t other[] = {'n', 'c', 'l', 'x', 0, 1, 0, 1, 0, 1, 0x80};
-    static const uint8_t links[] = {0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 1, 3, 0, 2, 2, 0x81, 2};
+    static const uint8_t links[] = {0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 2, 3, 5, 0, 2, 3, 0x81, 2, 0x84};
     *file = (bytes){.count = 0};
     put_box(file, "ftyp", "heic\0\0\0\0mif1", 12);
     size_t meta = begin_box(file, "meta");
@@ -277,6 +277,8 @@ static void make_heif(bytes *file, bool has_profile)
         put_box(file, "free", "", 0);
     put_box(file, "colr", nclx, sizeof nclx);
     put_box(file, "colr", other, sizeof other);
+    put_box(file, "irot", "\3", 1);
+    put_box(file, "irot", "\1", 1);
     end_box(file, list);
     put_box(file, "ipma", links, sizeof links);
     end_box(file, properties);
@@ -298,6 +300,7 @@ static void colours_of_heif_are_those_of_its_picture(void **state)
             fail_msg("%s", error.message);
         assert_int_equal(container, WEFT_CONTAINER_HEIF);
         assert_int_equal(tags.has_cicp, !has_profile);
+        assert_int_equal(tags.turned_as, 6);
         assert_int_equal(tags.profile_size, has_profile ? 3 : 0);
         if (has_profile)
             assert_memory_equal(tags.profile, "ICC", 3);
