@@ -1,4 +1,5 @@
-/* What is too dark to be read is not used: of the paper, and of the sample. */
+/* What files say of themselves before their pixels are looked at. What is too dark to be read is not used: of the
+ * paper, and of the sample. */
 #include "btf/dataset/dataset.h"
 #include "registration/lamp/evidence.h"
 #include "registration/photographs/steps.h"
@@ -8,8 +9,10 @@
 #include "tests/support/scratch_folder.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { SIDE = 600 };
 
@@ -127,9 +130,83 @@ static void light_that_contradicts_itself_is_refused(void **state)
     }
 }
 
+/* ---- What files say of themselves ---- */
+
+enum { WIDTH = 64, HEIGHT = 48, COUNT = 4 };
+
+static void put_photograph(const char *name, double f_number, double iso)
+{
+    weft_image image;
+    weft_error error = {0};
+    const weft_camera_notes notes = {.make = "M",
+                                     .model = "N",
+                                     .date = "2026:01:01 00:00:00",
+                                     .orientation = 1,
+                                     .exposure_s = 0.125,
+                                     .f_number = f_number,
+                                     .iso = iso,
+                                     .focal_length_mm = 50};
+    expect_ok(weft_image_create(WIDTH, HEIGHT, &image, &error), &error);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        image.pixels[i] = (float)(i % 101) / 101;
+    expect_ok(weft_snapshot_write("a.jpg", &image, &notes, &error), &error);
+    assert_int_equal(rename("a.jpg", name), 0);
+    weft_image_free(&image);
+}
+
+static weft_photograph_set list_folder(double f_number, double last_f_number, double iso)
+{
+    weft_photograph_set set = {0};
+    weft_error error = {0};
+    mkdir("folder", 0755);
+    for (int i = 0; i < COUNT; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "folder/%d.%s", i, i == 1 ? "nef" : i == 2 ? "dng" : "jpg");
+        put_photograph(name, i == COUNT - 1 ? last_f_number : f_number, iso);
+    }
+    expect_ok(weft_photographs_list("folder", &set, &error), &error);
+    assert_int_equal(set.count, COUNT);
+    for (int i = 0; i < COUNT; i++)
+        assert_true(weft_photographs_used(&set.photograph[i]));
+    return set;
+}
+
+static void assert_exposures(double f_number, double last_f_number, double iso, bool are_known, const char *note)
+{
+    weft_photograph_set set = list_folder(f_number, last_f_number, iso);
+    for (int i = 0; i < COUNT; i++)
+        assert_int_equal(weft_exif_exposure(&set.photograph[i].exif) > 0, are_known || i == COUNT - 1);
+    assert_int_equal(set.notes.count, note ? 1 : 0);
+    if (note)
+        assert_string_equal(set.notes.line[0], note);
+    weft_photographs_free(&set);
+}
+
+/* Lenses without contacts state no aperture; cameras write 0/0. */
+static void an_aperture_that_nobody_states_is_the_same_in_all(void **state)
+{
+    (void)state;
+    assert_exposures(8, 8, 100, true, NULL);
+    assert_exposures(0, 0, 100, true, "no photograph states its aperture: it is taken as the same in all");
+    assert_exposures(0, 0, 0, true,
+                     "no photograph states its aperture and sensitivity: both are taken as the same in all");
+    assert_exposures(0, 8, 100, false, NULL);
+}
+
+static void a_jpeg_named_as_raw_is_not_linear(void **state)
+{
+    (void)state;
+    weft_photograph_set set = list_folder(8, 8, 100);
+    for (int i = 0; i < COUNT; i++)
+        assert_false(set.photograph[i].exif.is_linear);
+    weft_photographs_free(&set);
+}
+
 int test_photographs_dark(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_aperture_that_nobody_states_is_the_same_in_all),
+        cmocka_unit_test(a_jpeg_named_as_raw_is_not_linear),
         cmocka_unit_test(paper_below_five_steps_of_its_file_is_not_looked_at),
         cmocka_unit_test(the_limit_follows_the_bits_of_the_file),
         cmocka_unit_test(dark_texels_are_masked_one_by_one),
