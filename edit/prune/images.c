@@ -44,44 +44,57 @@ static weft_vec3 inner_direction(const weft_components *components, weft_vec3 li
     return components->kind == WEFT_COMPONENTS_OF_LIGHT ? light : weft_unit(weft_add(light, view));
 }
 
-/* Whether a pair of the visibility has one of the views, and within an angle of `inner` what maps are of. */
-static bool is_reached(const weft_visibility *visibility, const weft_components *components, const cell_list *views,
-                       weft_vec3 inner, double least)
+/* Keeps the images of a view within an angle of `reached` in its map. */
+static void keep_near(const weft_components *components, int view, const weft_vec3 *inner, weft_vec3 reached,
+                      double least, bool *kept)
 {
-    for (int v = 0; v < views->count; v++) {
-        const uint8_t *row = visibility->pair + (size_t)views->cell[v] * WEFT_VISIBILITY_PAIR_CELLS;
-        weft_vec3 view = middle_of(views->cell[v]);
-        for (int l = 0; l < WEFT_VISIBILITY_PAIR_CELLS; l++)
-            if (row[l] && weft_dot(inner_direction(components, middle_of(l), view), inner) >= least)
-                return true;
-    }
-    return false;
+    for (uint32_t i = components->first[view]; i < components->first[view + 1]; i++)
+        kept[i] |= weft_dot(reached, inner[i]) >= least;
 }
 
+/* Those that a pair of the visibility reaches which has a view within the margin, too. */
 static void find_of_view(const weft_visibility *visibility, const weft_components *components, int view,
-                         double margin_rad, cell_list *list, bool *kept)
+                         double margin_rad, const weft_vec3 *inner, cell_list *list, bool *kept)
 {
-    weft_vec3 v = direction_at(components->view, (size_t)view);
     double least = cos(fmin(margin_rad + cell_radius, WEFT_PI));
-    list_cells(v, margin_rad, list);
-    for (uint32_t i = components->first[view]; i < components->first[view + 1]; i++)
-        kept[i] = is_reached(visibility, components, list,
-                             inner_direction(components, direction_at(components->light, i), v), least);
+    list_cells(direction_at(components->view, (size_t)view), margin_rad, list);
+    for (int v = 0; v < list->count; v++) {
+        const uint8_t *row = visibility->pair + (size_t)list->cell[v] * WEFT_VISIBILITY_PAIR_CELLS;
+        weft_vec3 from = middle_of(list->cell[v]);
+        for (int l = 0; l < WEFT_VISIBILITY_PAIR_CELLS; l++)
+            if (row[l])
+                keep_near(components, view, inner, inner_direction(components, middle_of(l), from), least, kept);
+    }
+}
+
+/* inner [image_count] */
+static void find_inner(const weft_components *components, weft_vec3 *inner)
+{
+    for (int view = 0; view < components->view_count; view++)
+        for (uint32_t i = components->first[view]; i < components->first[view + 1]; i++)
+            inner[i] = inner_direction(components, direction_at(components->light, i),
+                                       direction_at(components->view, (size_t)view));
 }
 
 weft_code weft_prune_find_images(const weft_visibility *visibility, const weft_components *components,
                                  double margin_rad, bool *kept, int *kept_count, weft_error *error)
 {
+    size_t images = (size_t)components->image_count;
     cell_list *list = calloc(1, sizeof *list);
-    if (!list)
-        return weft_fail_memory(error, "cells", sizeof *list);
-    *kept_count = 0;
-    for (int view = 0; view < components->view_count; view++)
-        find_of_view(visibility, components, view, margin_rad, list, kept);
-    for (int i = 0; i < components->image_count; i++)
-        *kept_count += kept[i];
+    weft_vec3 *inner = malloc(images * sizeof *inner);
+    weft_code code = list && inner ? WEFT_OK : weft_fail_memory(error, "images", images * sizeof *inner);
+    if (code == WEFT_OK) {
+        find_inner(components, inner);
+        memset(kept, 0, images * sizeof *kept);
+        for (int view = 0; view < components->view_count; view++)
+            find_of_view(visibility, components, view, margin_rad, inner, list, kept);
+        *kept_count = 0;
+        for (size_t i = 0; i < images; i++)
+            *kept_count += kept[i];
+    }
     free(list);
-    return WEFT_OK;
+    free(inner);
+    return code;
 }
 
 /* ---- What the others become ---- */
