@@ -11,7 +11,7 @@ cd "$scratch"
 
 weave="$assets/weaves/polyester_lining.wv"
 write_plan >plan.csv
-expect_ok capture --sample "$weave" --plan plan.csv -o good
+expect_ok capture --sample "$weave" --plan plan.csv --truth-images 1 --truth-size 4 -o good
 
 # A copy of the good session whose photographs may be spoilt.
 spoil() {

@@ -9,9 +9,9 @@ trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
 write_plan >plan.csv
-expect_ok capture --rig virtual --sample "$assets/weaves/wool_gabardine.wv" --plan plan.csv --seed 3 -o session
+expect_ok capture --rig virtual --sample "$assets/weaves/wool_gabardine.wv" --plan plan.csv --seed 3 --truth-images 1 --truth-size 4 -o session
 [ "$(wc -l <session/journal.jsonl)" = 32 ] || fail "the journal does not hold 32 photographs"
-expect_ok capture --rig virtual --sample "$assets/weaves/wool_gabardine.wv" --plan plan.csv --seed 3 -o session
+expect_ok capture --rig virtual --sample "$assets/weaves/wool_gabardine.wv" --plan plan.csv --seed 3 --truth-images 1 --truth-size 4 -o session
 [ "$(wc -l <session/journal.jsonl)" = 32 ] || fail "a finished session was photographed again"
 expect_says "32" info session
 expect_ok verify session
