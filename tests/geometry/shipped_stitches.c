@@ -1,11 +1,17 @@
 #include "tests/geometry/shipped_stitches.h"
 
 #include "tests/support/cmocka_all.h"
+#include "tests/support/suite.h"
 
 #include <stdio.h>
 
 const char *const shipped_stitch[SHIPPED_STITCHES] = {"plain_knit", "purl_knit", "two_colour_loops", "plain_weave",
                                                       "twill",      "satin",     "open_weave",       "ribs"};
+
+int shipped_stitch_step(void)
+{
+    return suite_argument ? 1 : SHIPPED_STITCHES / 2;
+}
 
 void shipped_stitch_open(const char *name, int resolution, weft_stitch *stitch, weft_tile_mesh *mesh)
 {

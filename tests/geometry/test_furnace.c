@@ -1,5 +1,5 @@
 /* A white furnace around the estimators that make samples: those of datasets (weft simulate) and those of the virtual
- * rig. Every shipped stitch is painted white, and a closed white floor of rods is laid under it. Then nothing is
+ * rig. A shipped stitch is painted white, and a closed white floor of rods is laid under it. Then nothing is
  * absorbed and nothing passes: whatever the cloth is like, the reflectance over all lights is 1 in every view. That is
  * the whole truth of the test; it needs no model of the cloth. */
 #include "btf/dataset/dataset.h"
@@ -136,7 +136,7 @@ static double read_albedo(double albedo[DIRECTIONS])
 static void a_simulated_dataset_keeps_all_light(void **state)
 {
     (void)state;
-    for (int i = 0; i < SHIPPED_STITCHES; i++) {
+    for (int i = 0; i < SHIPPED_STITCHES; i += shipped_stitch_step()) {
         double albedo[DIRECTIONS], worst = 0;
         weft_acquisition_report report = simulate(shipped_stitch[i]);
         double mean = read_albedo(albedo);
@@ -157,7 +157,7 @@ static void a_sample_of_the_virtual_rig_keeps_all_light(void **state)
 {
     (void)state;
     enum { PATHS = 3000, LIGHTS = 32 };
-    for (int i = 0; i < SHIPPED_STITCHES; i++) {
+    for (int i = 0; i < SHIPPED_STITCHES; i += shipped_stitch_step()) {
         weft_stitch_sample *sample;
         weft_error error = {0};
         char *text = furnace_text(shipped_stitch[i]);

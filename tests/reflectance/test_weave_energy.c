@@ -1,7 +1,9 @@
-/* No published fabric reflects more light than it receives. Built twice: in double, and in single precision. */
+/* No published fabric reflects more light than it receives: a twill of cotton and a satin of silk, or with an argument
+ * all. Built twice: in double, and in single precision. */
 #include "btf/direction/direction.h"
 #include "reflectance/weave/weave.h"
 #include "tests/support/cmocka_all.h"
+#include "tests/support/suite.h"
 
 #include <stdio.h>
 
@@ -60,7 +62,7 @@ static void published_fabrics_reflect_no_more_than_they_receive(void **state)
     (void)state;
     static const char *const name[] = {"cotton_denim",   "cotton_twill",  "polyester_lining",
                                        "silk_charmeuse", "silk_shantung", "wool_gabardine"};
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; i += suite_argument ? 1 : 3) {
         weft_weave weave = read_fabric(name[i]);
         double smallest, largest = largest_albedo(&weave, &smallest);
         print_message("%s: albedo %.3f to %.3f\n", name[i], smallest, largest);

@@ -1,5 +1,6 @@
-/* Weaves found again from what they reflect. */
+/* Weaves found again from what they reflect: one of each kind, with an argument all. */
 #include "tests/support/cmocka_all.h"
+#include "tests/support/suite.h"
 
 #include "btf/direction/direction.h"
 #include "compress/weave_fit/fit_weave.h"
@@ -141,6 +142,8 @@ static void staple_fabrics_are_found_again_from_30_percent_off(void **state)
 {
     (void)state;
     assert_recovered("wool_gabardine", 2);
+    if (!suite_argument)
+        return;
     assert_recovered("cotton_denim", 1);
     assert_recovered("cotton_twill", 1);
 }
@@ -149,6 +152,8 @@ static void filament_fabrics_are_found_again_from_30_percent_off(void **state)
 {
     (void)state;
     assert_recovered("silk_shantung", 2);
+    if (!suite_argument)
+        return;
     assert_recovered("polyester_lining", 2);
     assert_recovered("silk_charmeuse", 2);
 }
