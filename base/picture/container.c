@@ -154,13 +154,30 @@ static weft_code read_scans(const source *s, uint64_t place, scans *found)
     return WEFT_OK;
 }
 
-/* A cluster of a disk that was never written is all zeros. Codes of Huffman leave no such run in a sequential JPEG, but
- * a decoder does not mind one; progressive ones may well refine by zeros. Each scan of a progressive one costs as much
- * as the picture is large, however short it is. The decoder finds other damage. */
+/* Whether a symbol other than 0 has the code of nothing but zeros in one of the tables of a DHT segment. Where 0 has it
+ * in all of them, zeros are a flat area. */
+static weft_code read_tables(const source *s, uint64_t place, uint64_t end, bool *has_other)
+{
+    enum { LENGTHS = 16 };
+    while (place + 1 + LENGTHS < end) {
+        uint8_t head[1 + LENGTHS + 1];
+        uint64_t symbols = 0;
+        WEFT_TRY(fetch(s, place, head, sizeof head));
+        for (int i = 1; i <= LENGTHS; i++)
+            symbols += head[i];
+        *has_other = *has_other || head[1 + LENGTHS] != 0;
+        place += 1 + LENGTHS + symbols;
+    }
+    return WEFT_OK;
+}
+
+/* A cluster of a disk that was never written is all zeros. Usual codes of Huffman leave no such run in a sequential
+ * JPEG, but a decoder does not mind one; progressive ones may well refine by zeros. Each scan of a progressive one
+ * costs as much as the picture is large, however short it is. The decoder finds other damage. */
 static weft_code read_jpeg(source *s)
 {
-    enum { BASELINE = 0xc0, EXTENDED = 0xc1, START_OF_SCAN = 0xda, MOST_ZEROS = 127, MOST_SCANS = 200 };
-    bool is_sequential = false;
+    enum { BASELINE = 0xc0, EXTENDED = 0xc1, TABLES = 0xc4, START_OF_SCAN = 0xda, MOST_ZEROS = 127, MOST_SCANS = 200 };
+    bool is_sequential = false, has_other = false;
     scans found = {0};
     s->big_endian = true;
     for (uint64_t place = 2; found.count == 0 && holds(s, place, 4);) {
@@ -168,12 +185,14 @@ static weft_code read_jpeg(source *s)
         WEFT_TRY(fetch(s, place, head, sizeof head));
         if (head[0] != 0xff)
             return WEFT_OK;
+        if (head[1] == TABLES)
+            WEFT_TRY(read_tables(s, place + 4, place + 2 + number_of(s, head + 2, 2), &has_other));
         place += 2 + number_of(s, head + 2, 2);
         is_sequential = is_sequential || head[1] == BASELINE || head[1] == EXTENDED;
         if (head[1] == START_OF_SCAN)
             WEFT_TRY(read_scans(s, place, &found));
     }
-    if (is_sequential && found.zeros > MOST_ZEROS)
+    if (is_sequential && has_other && found.zeros > MOST_ZEROS)
         return damaged(s, "a part of its data was replaced by zeros");
     return found.count <= MOST_SCANS ? WEFT_OK : damaged(s, "it has more scans than any picture needs");
 }

@@ -429,6 +429,36 @@ static void a_jpeg_that_is_not_whole_is_refused(void **state)
     assert_refused("a.jpg", "not whole");
 }
 
+/* Tables that were made for one picture give its commonest symbols codes of zeros: then a flat area is a run of them.
+ */
+static void a_flat_area_is_no_damage(void **state)
+{
+    (void)state;
+    enum { BLOCKS = 64 * 64 };
+    static const uint8_t one[1] = {1}, zeros[2 * BLOCKS / 8];
+    bytes file = {.count = 0};
+    weft_image image;
+    weft_error error = {0};
+    put(&file, "\xff\xd8\xff\xdb\0\103\0", 7);
+    for (int i = 0; i < 64; i++)
+        put(&file, one, 1);
+    put(&file, "\xff\xc0\0\13\10\2\0\2\0\1\1\21\0", 13);
+    for (int class = 0; class < 2; class ++) {
+        const uint8_t table[5 + 16 + 1] = {0xff, 0xc4, 0, 20, (uint8_t)(16 * class), 1};
+        put(&file, table, sizeof table);
+    }
+    put(&file, "\xff\xda\0\10\1\1\0\0\77\0", 10);
+    put(&file, zeros, sizeof zeros);
+    put(&file, "\xff\xd9", 2);
+    save(&file, "flat.jpg");
+    if (weft_image_read("flat.jpg", &image, NULL, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    assert_true(image.width == 512 && image.height == 512);
+    for (int i = 0; i < 3 * 512 * 512; i++)
+        assert_float_equal(image.pixels[i], 128 / 255.0, 1e-6);
+    weft_image_free(&image);
+}
+
 int test_container(void)
 {
     const struct CMUnitTest tests[] = {
@@ -444,6 +474,7 @@ int test_container(void)
         cmocka_unit_test(white_is_one_whether_it_is_written_as_zero_or_not),
         cmocka_unit_test(a_tiff_that_ends_too_early_is_refused),
         cmocka_unit_test(a_jpeg_that_is_not_whole_is_refused),
+        cmocka_unit_test(a_flat_area_is_no_damage),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }
