@@ -230,32 +230,42 @@ weft_code weft_smooth_map_solve(const weft_smooth_map *map, const float *value, 
     return WEFT_OK;
 }
 
-/* Element (row, column) of the inverse Z from what follows it in the band: of L' Z = L^-1, whose upper triangle is 0
- * but for the diagonal (Takahashi, Fagan and Chin 1973). */
-static double inverse_element(const weft_smooth_map *map, const double *inverse, int row, int column)
+/* The inverse Z of N within its band, both sides of it: element (row, column) stands at
+ * row * (2 width + 1) + width + column - row, so that a row lies in one piece. */
+static double *inverse_row(const weft_smooth_map *map, double *inverse, int row)
 {
-    int stride = map->width + 1,
-        last = column + map->width < map->node_count ? column + map->width : map->node_count - 1;
-    const double *factor = map->band + (size_t)column * (size_t)stride;
-    double sum = row == column ? 1 / factor[0] : 0;
-    for (int k = column + 1; k <= last; k++) {
-        int low = k < row ? k : row, high = k < row ? row : k;
-        sum -= factor[k - column] * inverse[(size_t)low * (size_t)stride + (size_t)(high - low)];
+    return inverse + (size_t)row * (size_t)(2 * map->width + 1) + map->width - row;
+}
+
+/* A column of Z, and with it a row, from those that follow: of L' Z = L^-1, whose upper triangle is 0 but for the
+ * diagonal (Takahashi, Fagan and Chin 1973). */
+static void invert_column(const weft_smooth_map *map, int column, double *inverse)
+{
+    double below[2 * MOST_SIDE] = {0};
+    int count = column + map->width < map->node_count ? map->width : map->node_count - 1 - column, next = column + 1;
+    const double *factor = map->band + (size_t)column * (size_t)(map->width + 1);
+    double *own = inverse_row(map, inverse, column), sum = 1 / factor[0];
+    for (int k = 0; k < count; k++) {
+        const double *row = inverse_row(map, inverse, next + k) + next;
+        for (int i = 0; i < count; i++)
+            below[i] -= factor[k + 1] * row[i];
     }
-    return sum / factor[0];
+    for (int i = 0; i < count; i++)
+        own[next + i] = inverse_row(map, inverse, next + i)[column] = below[i] / factor[0];
+    for (int k = 0; k < count; k++)
+        sum -= factor[k + 1] * own[next + k];
+    own[column] = sum / factor[0];
 }
 
 weft_code weft_smooth_map_variances(const weft_smooth_map *map, float *variance, weft_error *error)
 {
-    size_t stride = (size_t)map->width + 1, count = (size_t)map->node_count * stride;
-    double *inverse = malloc(count * sizeof *inverse); /* its lower band, as that of N */
+    size_t count = (size_t)map->node_count * (size_t)(2 * map->width + 1);
+    double *inverse = malloc(count * sizeof *inverse);
     if (!inverse)
         return weft_fail_memory(error, "smooth map", count * sizeof *inverse);
     for (int column = map->node_count - 1; column >= 0; column--) {
-        for (int row = column + map->width < map->node_count ? column + map->width : map->node_count - 1; row >= column;
-             row--)
-            inverse[(size_t)column * stride + (size_t)(row - column)] = inverse_element(map, inverse, row, column);
-        variance[column] = (float)inverse[(size_t)column * stride];
+        invert_column(map, column, inverse);
+        variance[column] = (float)inverse_row(map, inverse, column)[column];
     }
     free(inverse);
     return WEFT_OK;
