@@ -10,7 +10,7 @@ static const weft_fit_lobe mirror_start = {.c = {-0.95, -0.9, 1}, .log_exponent 
 static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent = 0.4055};
 
 enum {
-    RACE_PASSES = 3,
+    RACE_PASSES = 4,
     START_PASSES = 6,
     SCREENED = 4, /* lobes that are followed of those that the screen ranks */
     STEPS = 2,    /* as many for a number of lobes that is only a step to the next */
@@ -24,6 +24,7 @@ enum {
 #define NEAR 1.1   /* nor is a challenger refined that leaves so many times what the incumbent leaves */
 #define ALIKE 0.99 /* of two residuals: both starts have found the same, and the screen is followed no further */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
+#define SHARP 4.1589           /* ln 64: a lobe from here on is split for two lobes, too */
 #define WORTHWHILE 0.98        /* a frame is turned only where that takes at least 2 % off the squared error */
 
 /* A search that grows lobe by lobe. The incumbent comes from the usual starts, which cloth mostly wants; the challenger
@@ -157,9 +158,11 @@ static void grow(search *own)
         weft_fit usual = usual_start(own->options.lobe_count, &base.frame);
         try_shapes(own, &usual, true);
     }
+    bool is_usual = own->options.lobe_count > 2;
     for (int split = 0; split < base.lobe_count; split++) {
         weft_fit more = with_lobe_split(&base, split);
-        try_shapes(own, &more, own->options.lobe_count > 2);
+        if (is_usual || base.lobe[split].log_exponent >= SHARP)
+            try_shapes(own, &more, is_usual);
     }
     for (int i = 0; i < found && (i == 0 || !are_alike(own)); i++) {
         weft_fit more = base;
