@@ -114,7 +114,7 @@ class lamp_search : lamp_terms
             for (int c = 0; c < 3; c++)
                 along += lamp[r] * matrix[3 * r + c] * lamp[c] / squared;
         along = input->flash ? trace / 3 : along;
-        return std::sqrt(std::max(0.0, trace - along) / squared) * 180 / WEFT_PI;
+        return std::hypot(std::sqrt(std::max(0.0, trace - along) / squared), sheet_slope) * 180 / WEFT_PI;
     }
 
     void write_place(int i)

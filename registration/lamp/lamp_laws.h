@@ -19,6 +19,9 @@ constexpr double unit_mm = 100;
 constexpr double paper_deviation = 0.01, ink_deviation = 0.03;
 constexpr double independent_samples = 30, independent_pair_samples = 200;
 
+/* A sheet is flat within a millimetre over its half: what its slope adds to the error of a lamp's direction. */
+constexpr double sheet_slope = 0.01;
+
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
  * place, the head of the pin within half of one; ink within a fifth. */
 constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, pin_deviation_mm = 0.5;

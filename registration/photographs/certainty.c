@@ -6,8 +6,6 @@
 #include "registration/pose/normal_equations.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -170,20 +168,6 @@ weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int
 
 /* ---- What the user should know ---- */
 
-/* One contradiction: an error, or a note where the user wants the dataset all the same. */
-static weft_code contradict(const char *folder, const weft_photographs_settings *settings, weft_photograph_set *set,
-                            weft_error *error, const char *format, ...)
-{
-    char text[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (settings->force)
-        return weft_lines_add(&set->notes, error, "%s", text);
-    return weft_fail(error, WEFT_BAD_INPUT, "'%s': %s; --force writes the dataset all the same", folder, text);
-}
-
 static double median_residual(const weft_photograph_set *set)
 {
     double *residual = malloc(((size_t)set->count + 1) * sizeof *residual);
@@ -205,27 +189,30 @@ weft_code weft_photographs_check_light(const char *folder, const weft_photograph
     const weft_target *target = &settings->target;
     double usual = target->ink_reflectance / target->paper_reflectance, off = median_residual(set);
     if (set->lamps.ink > most_factor * usual || set->lamps.ink < usual / most_factor)
-        WEFT_TRY(contradict(folder, settings, set, error,
-                            "the ink comes out as %.3f of the paper, but ink reflects %.2f to %.2f of it: %s",
-                            set->lamps.ink, usual / most_factor, usual * most_factor,
-                            set->tone_found
-                                ? "the tone curve is wrong. Use raw files, or take four photographs twice, the second "
-                                  "two stops darker"
-                                : "the files are not linear, or light from elsewhere falls on the sheet"));
+        WEFT_TRY(weft_photographs_contradict(
+            folder, settings, set, error,
+            "the ink comes out as %.3f of the paper, but ink reflects %.2f to %.2f of it: %s", set->lamps.ink,
+            usual / most_factor, usual * most_factor,
+            set->tone_found ? "the tone curve is wrong. Use raw files, or take four photographs twice, the second "
+                              "two stops darker"
+                            : "the files are not linear, or light from elsewhere falls on the sheet"));
     if (off > most_residual)
-        WEFT_TRY(contradict(folder, settings, set, error,
-                            "the light on the bare paper is %.0f %% off that of a lamp (median): one small lamp must "
-                            "light the sheet in a dark room, and --flash says that it is fixed to the camera",
-                            100 * off));
+        WEFT_TRY(weft_photographs_contradict(
+            folder, settings, set, error,
+            "the light on the bare paper is %.0f %% off that of a lamp (median): one small lamp must "
+            "light the sheet in a dark room, and --flash says that it is fixed to the camera",
+            100 * off));
     if (set->lamps.ball_misfit > most_misfit)
-        WEFT_TRY(contradict(folder, settings, set, error,
-                            "the highlights on the balls lie %.0f standard errors off, median: check --opening and "
-                            "--balls",
-                            set->lamps.ball_misfit));
+        WEFT_TRY(weft_photographs_contradict(
+            folder, settings, set, error,
+            "the highlights on the balls lie %.0f standard errors off, median: check --opening and "
+            "--balls",
+            set->lamps.ball_misfit));
     if (set->lamps.pin_misfit > most_misfit)
-        return contradict(folder, settings, set, error,
-                          "the shadows of the pin lie %.0f standard errors off, median: check --opening and --pin",
-                          set->lamps.pin_misfit);
+        return weft_photographs_contradict(
+            folder, settings, set, error,
+            "the shadows of the pin lie %.0f standard errors off, median: check --opening and --pin",
+            set->lamps.pin_misfit);
     return WEFT_OK;
 }
 

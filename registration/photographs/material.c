@@ -284,6 +284,7 @@ static weft_code write(work *w, const char *output, int count, weft_dataset_layo
     WEFT_TRY(invert_vignetting(w, error));
     WEFT_TRY(weft_dataset_writer_create(output, layout, &w->writer, error));
     WEFT_TRY(put_all(w, count, error));
+    WEFT_TRY(weft_photographs_check_still(w->folder, w->settings, w->set, error));
     WEFT_TRY(weft_photographs_put_figures(w->set, w->photograph, count, layout->texel_pitch_mm, w->writer, error));
     char *text = provenance(w);
     if (!text)

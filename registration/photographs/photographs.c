@@ -336,6 +336,8 @@ static weft_code run(work *w, const char *output, weft_error *error)
     if (w->settings->lights)
         WEFT_TRY(weft_listed_check(w->settings->lights, set->photograph, set->count, error));
     const weft_exif *common = weft_photographs_common_size(set);
+    WEFT_TRY(weft_photographs_check_sizes(w->folder, w->settings, common, set, error));
+    weft_photographs_leave_out_other_lenses(set);
     set->tone_found = !w->settings->linear && !common->is_linear;
     set->tone = set->tone_found ? weft_tone_srgb() : weft_tone_linear();
     WEFT_TRY(look_at_all(w, "looking for the target", look_for_corners, error));
@@ -353,8 +355,10 @@ static weft_code run(work *w, const char *output, weft_error *error)
     WEFT_TRY(check_enough(w, "can be used", what_helps, error));
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(set);
+    weft_photographs_leave_out_unlit(set);
     weft_photographs_leave_out_darker(set);
     WEFT_TRY(weft_photographs_check_light(w->folder, w->settings, set, error));
+    WEFT_TRY(weft_photographs_check_flash(w->folder, w->settings, set, error));
     WEFT_TRY(weft_photographs_note(set, error));
     if (!w->settings->colour)
         WEFT_TRY(weft_photographs_note_colours(set, error));

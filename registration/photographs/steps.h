@@ -131,6 +131,36 @@ weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int
 /* Adds a line to the notes of `set` where the tone curve leaves dark cloth open. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_photographs_note(weft_photograph_set *set, weft_error *error);
 
+/* ---- Mistakes, named for what they are ---- */
+
+/* One contradiction: the error WEFT_BAD_INPUT, or with settings->force a note. */
+__attribute__((format(printf, 5, 6))) weft_code weft_photographs_contradict(const char *folder,
+                                                                            const weft_photographs_settings *settings,
+                                                                            weft_photograph_set *set, weft_error *error,
+                                                                            const char *format, ...);
+
+/* Refuses a folder in which more than a fifth of the photographs have another size than `common`. Errors:
+ * WEFT_BAD_INPUT naming one; WEFT_SYSTEM for memory. */
+weft_code weft_photographs_check_sizes(const char *folder, const weft_photographs_settings *settings,
+                                       const weft_exif *common, weft_photograph_set *set, weft_error *error);
+
+/* Gives a remark to photographs whose focal length, as the camera wrote it, is not that of most. */
+void weft_photographs_leave_out_other_lenses(weft_photograph_set *set);
+
+/* Gives a remark to photographs whose lamp has less than a fifth of the power of the median, where exposures are
+ * written. */
+void weft_photographs_leave_out_unlit(weft_photograph_set *set);
+
+/* Refuses photographs whose lamp lies within 12 degrees of the camera in nine of ten, without --flash; at least two
+ * must be taken from the side. Errors: as weft_photographs_check_sizes. */
+weft_code weft_photographs_check_flash(const char *folder, const weft_photographs_settings *settings,
+                                       weft_photograph_set *set, weft_error *error);
+
+/* Refuses photographs in which the sample lies elsewhere in the opening than in the one from most nearly above: its
+ * small picture there correlates much better when it is moved. Errors: as weft_photographs_check_sizes. Uses OpenMP. */
+weft_code weft_photographs_check_still(const char *folder, const weft_photographs_settings *settings,
+                                       weft_photograph_set *set, weft_error *error);
+
 /* Refuses photographs whose light contradicts itself: ink and paper that no printer makes, bare paper that no lamp
  * lights so, highlights or shadows of the pin that lie elsewhere than the lamp makes them. settings->force makes a note
  * of each instead. Errors: WEFT_BAD_INPUT naming the folder and the contradiction; WEFT_SYSTEM for memory. */

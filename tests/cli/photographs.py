@@ -1,17 +1,10 @@
-"""Holds NAME.btf.h5, registered from the photographs in NAME/, against NAME.truth.json and NAME.truth.btf.h5."""
+"""Holds NAME.btf.h5, registered from the photographs in NAME/, against NAME.truth.json and NAME.truth.btf.h5.
+With TRUTH.json as a second word: against what an independent renderer says of its photographs."""
 import json
 import sys
 
 import h5py
 import numpy as np
-
-name = sys.argv[1]
-found = h5py.File(name + ".btf.h5")
-true = h5py.File(name + ".truth.btf.h5")
-truth = {p["name"]: (i, p) for i, p in enumerate(json.load(open(name + ".truth.json"))["photographs"])}
-told = json.loads(found["provenance"][()])
-used = [p for p in told["photographs"] if "left_out" not in p]
-
 
 def angle_deg(a, b):
     a, b = np.array(a), np.array(b)
@@ -21,6 +14,35 @@ def angle_deg(a, b):
 def check(what, value, limit):
     print("%-60s %.4f (at most %.4f)" % (what, value, limit))
     return value <= limit
+
+
+def check_independent(name, truth):
+    """Lamps, ink, and the tone curve from the ink to the paper."""
+    told, lamp, covered = json.loads(h5py.File(name + ".btf.h5")["provenance"][()]), [], []
+    true_lamps = {p["file"]: p["lamp"]["position"] for p in truth["photos"]}
+    for p in told["photographs"]:
+        if "left_out" not in p:
+            lamp.append(angle_deg(p["lamp_mm"], true_lamps[p["file"]]))
+            covered.append(lamp[-1] <= 2 * p["lamp_uncertainty_deg"])
+    encoded = np.linspace(0.15, 0.8, 14)
+    curve = [np.interp(encoded, *of) for of in ((np.linspace(0, 1, len(told["tone"])), told["tone"]),
+                                                (truth["encoded"], truth["linear"]))]
+    off = np.abs(np.log(curve[0] / curve[0][-1]) - np.log(curve[1] / curve[1][-1]))
+    limits = {"paper-alone": (4, 0.15), "bowed": (1.5, 0.1), "flash": (4, 0.15)}[name]
+    good = check(name + ": direction of the lamp, degrees, median", np.median(lamp), limits[0])
+    good &= check("share of lamps not within two standard errors", 1 - np.mean(covered), 0.25)
+    good &= check("logarithm of ink over paper, error", abs(np.log(told["ink_over_paper"] / (0.04 / 0.85))), 0.4)
+    return good & check("tone curve, relative to paper, median", np.median(off), limits[1])
+
+
+name = sys.argv[1]
+if len(sys.argv) > 2:
+    sys.exit(0 if check_independent(name, json.load(open(sys.argv[2]))) else 1)
+found = h5py.File(name + ".btf.h5")
+true = h5py.File(name + ".truth.btf.h5")
+truth = {p["name"]: (i, p) for i, p in enumerate(json.load(open(name + ".truth.json"))["photographs"])}
+told = json.loads(found["provenance"][()])
+used = [p for p in told["photographs"] if "left_out" not in p]
 
 
 good = all(truth[p["file"]][1]["fault"] == "good" for p in used)

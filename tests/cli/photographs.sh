@@ -55,6 +55,20 @@ if [ "${4-}" = long ]; then
         grep -q "are too dark to be read" $where || fail "$where does not tell what is masked"
     done
     grep -q "focal length.*standard error" series-report/index.html || fail "the report does not tell how well the lens is known"
+
+    # Photographs of an independent renderer, where there are any.
+    independent=${WEFT_SHARED:+$WEFT_SHARED/photographs}
+    [ -d "$independent" ] || echo "skipped: the photographs of an independent renderer are not here"
+    for set in ${independent:+paper-alone bowed flash}; do
+        [ -d "$independent/$set" ] || continue
+        case $set in paper-alone) told="--balls 0 --pin 0" ;; flash) told="--flash --balls 0 --pin 0" ;; *) told= ;; esac
+        # shellcheck disable=SC2086 # options, or none
+        "$weft" photographs "$independent/$set" -o "$set.btf.h5" --size 32x32 $told -q 2>/dev/null
+        "$python" "$here/photographs.py" "$set" "$independent/$set/truth.json" || fail "set $set is wrong"
+    done
+    if [ -d "$independent/flash" ]; then
+        refused "the lamp stood beside the camera" "$independent/flash" --size 32x32 --balls 0 --pin 0
+    fi
 fi
 
 "$weft" synthetic checker --opening 40 -o linear --photographs 6 --format exr --width 800 --truth-size 32 -q

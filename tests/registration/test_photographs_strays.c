@@ -1,13 +1,16 @@
-/* Markers that a pin or a shadow crosses, among those of photographs from a hand. The corners are made here from a lens
+/* What is left out, or refused: markers that a pin or a shadow crosses, and mistakes. Corners are made here from a lens
  * that is known. */
 #include "registration/photographs/lens.h"
+#include "registration/photographs/steps.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
+#include "tests/support/expect_ok.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { PHOTOGRAPHS = 10, WIDTH = 1500, HEIGHT = 1000 };
 
@@ -154,6 +157,148 @@ static void most_corners_of_a_gently_bent_sheet_stay_or_none_count(void **state)
     }
 }
 
+/* ---- Mistakes of people, named for what they are ---- */
+
+enum { COUNT = 8, PICTURE = 64 };
+
+/* Eight photographs from the side, whose lamps lie elsewhere; all have one size, one lens and one power. */
+static void make_set(weft_photographs_photograph photograph[COUNT], weft_photograph_set *set)
+{
+    static char names[COUNT][2];
+    memset(photograph, 0, COUNT * sizeof *photograph);
+    for (int i = 0; i < COUNT; i++) {
+        weft_photographs_photograph *p = &photograph[i];
+        names[i][0] = (char)('a' + i);
+        p->name = names[i];
+        p->exif = (weft_exif){.width = 600, .height = 400, .bits = 8, .f_number = 8, .iso = 100, .exposure_s = 0.01};
+        p->exif.focal_length_35mm = 35;
+        p->pose = weft_pose_of_view((weft_angles){0.2 + 0.05 * i, 2.4 * i}, 500);
+        p->lamp.position_mm = weft_scale(weft_direction_of_angles((weft_angles){0.6, 1.7 * i}), 400 + 50 * (i % 3));
+        double squared = weft_dot(p->lamp.position_mm, p->lamp.position_mm);
+        p->lamp.level[0] = p->lamp.level[1] = p->lamp.level[2] = 1e5 / squared;
+    }
+    *set = (weft_photograph_set){.count = COUNT, .photograph = photograph};
+}
+
+/* A refusal that holds `words`, and with --force a note; both NULL: neither. */
+static void expect_refusal(weft_code (*check)(const char *, const weft_photographs_settings *, weft_photograph_set *,
+                                              weft_error *),
+                           weft_photograph_set *set, const char *words)
+{
+    weft_photographs_settings settings = weft_photographs_defaults();
+    weft_error error = {0};
+    weft_code code = check("felt", &settings, set, &error);
+    if (!words) {
+        expect_ok(code, &error);
+        assert_int_equal(set->notes.count, 0);
+        return;
+    }
+    assert_int_equal(weft_class_of(code), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, words));
+    settings.force = true;
+    expect_ok(check("felt", &settings, set, &error), &error);
+    assert_int_equal(set->notes.count, 1);
+    assert_non_null(strstr(set->notes.line[0], words));
+    weft_lines_free(&set->notes);
+}
+
+static weft_code check_sizes(const char *folder, const weft_photographs_settings *settings, weft_photograph_set *set,
+                             weft_error *error)
+{
+    return weft_photographs_check_sizes(folder, settings, weft_photographs_common_size(set), set, error);
+}
+
+static void a_folder_of_two_sizes_is_refused(void **state)
+{
+    (void)state;
+    weft_photographs_photograph photograph[COUNT];
+    weft_photograph_set set;
+    make_set(photograph, &set);
+    photograph[7].exif.width = 300;
+    expect_refusal(check_sizes, &set, NULL);
+    photograph[3].exif.width = 300;
+    expect_refusal(check_sizes, &set, "2 of 8 photographs have another size than 600 x 400 pixels, such as 'd'");
+}
+
+static void another_lens_is_left_out(void **state)
+{
+    (void)state;
+    weft_photographs_photograph photograph[COUNT];
+    weft_photograph_set set;
+    make_set(photograph, &set);
+    photograph[1].exif.focal_length_35mm = 50;
+    photograph[2].exif.focal_length_35mm = 35.5; /* rounded otherwise */
+    photograph[3].exif.focal_length_35mm = 0;    /* nothing is written */
+    weft_photographs_leave_out_other_lenses(&set);
+    for (int i = 0; i < COUNT; i++)
+        assert_int_equal(weft_photographs_used(&photograph[i]), i != 1);
+    assert_non_null(strstr(photograph[1].remark, "another lens or zoom: 50 mm, most with 35 mm"));
+}
+
+static void a_lamp_that_was_off_is_left_out(void **state)
+{
+    (void)state;
+    weft_photographs_photograph photograph[COUNT];
+    weft_photograph_set set;
+    make_set(photograph, &set);
+    photograph[4].lamp.level[1] /= 20;
+    photograph[5].lamp.level[1] /= 3;
+    weft_photographs_leave_out_unlit(&set);
+    for (int i = 0; i < COUNT; i++)
+        assert_int_equal(weft_photographs_used(&photograph[i]), i != 4);
+    assert_non_null(strstr(photograph[4].remark, "5.0 % of that of the others"));
+}
+
+static void a_flash_that_is_not_told_is_refused(void **state)
+{
+    (void)state;
+    weft_photographs_photograph photograph[COUNT];
+    weft_photograph_set set;
+    make_set(photograph, &set);
+    expect_refusal(weft_photographs_check_flash, &set, NULL);
+    for (int i = 0; i < COUNT; i++)
+        photograph[i].lamp.position_mm =
+            weft_add(weft_pose_camera_position(&photograph[i].pose), weft_vec3_of(30, -30, 10));
+    expect_refusal(weft_photographs_check_flash, &set, "beside the camera in 8 of 8 photographs");
+    photograph[0].lamp.position_mm = photograph[1].lamp.position_mm = weft_vec3_of(400, 0, 300);
+    expect_refusal(weft_photographs_check_flash, &set, NULL);
+}
+
+/* Spots that repeat nowhere, moved by `shift` pixels, in light of some strength. */
+static void draw_sample(weft_image *image, int shift, double strength)
+{
+    weft_error error = {0};
+    expect_ok(weft_image_create(PICTURE, PICTURE, image, &error), &error);
+    for (int i = 0; i < PICTURE * PICTURE; i++) {
+        double x = i % PICTURE - shift, y = (double)(i / PICTURE), value = 0.5;
+        for (int spot = 0; spot < 20; spot++) {
+            double dx = x - fmod(37.7 * spot, PICTURE), dy = y - fmod(23.3 * spot + 5, PICTURE);
+            value += 0.3 * (spot % 2 ? 1 : -1) * exp(-(dx * dx + dy * dy) / 12);
+        }
+        for (int c = 0; c < 3; c++)
+            image->pixels[3 * i + c] = (float)(strength * value);
+    }
+}
+
+static void a_sample_that_moved_is_refused(void **state)
+{
+    (void)state;
+    weft_photographs_photograph photograph[COUNT];
+    weft_photograph_set set;
+    make_set(photograph, &set);
+    for (int i = 0; i < COUNT; i++)
+        draw_sample(&photograph[i].rectified, 0, 0.5 + 0.1 * (i % 4));
+    expect_refusal(weft_photographs_check_still, &set, NULL);
+    for (int i = 4; i < COUNT; i++) {
+        weft_image_free(&photograph[i].rectified);
+        draw_sample(&photograph[i].rectified, 4, 0.7);
+    }
+    expect_refusal(weft_photographs_check_still, &set,
+                   "moved under the sheet: in 4 of 8 photographs, such as 'e', it lies 3.1 mm");
+    for (int i = 0; i < COUNT; i++)
+        weft_image_free(&photograph[i].rectified);
+}
+
 int test_photographs_strays(void)
 {
     const struct CMUnitTest tests[] = {
@@ -161,6 +306,11 @@ int test_photographs_strays(void)
         cmocka_unit_test(no_corner_is_lost_without_reason),
         cmocka_unit_test(a_bent_sheet_and_another_zoom_are_left_out),
         cmocka_unit_test(most_corners_of_a_gently_bent_sheet_stay_or_none_count),
+        cmocka_unit_test(a_folder_of_two_sizes_is_refused),
+        cmocka_unit_test(another_lens_is_left_out),
+        cmocka_unit_test(a_lamp_that_was_off_is_left_out),
+        cmocka_unit_test(a_flash_that_is_not_told_is_refused),
+        cmocka_unit_test(a_sample_that_moved_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
