@@ -123,9 +123,12 @@ static json_t *describe_heights(const weft_material_heights *heights)
 
 static json_t *describe_components(const weft_components *components)
 {
-    static const char *const kind[] = {"light", "half vector", "half vector, squared incidence"};
-    return json_pack("{s:i, s:s, s:i, s:i}", "count", components->component_count, "maps_over", kind[components->kind],
-                     "views", components->view_count, "images", components->image_count);
+    bool over_half_vector = weft_components_are_over_half_vector(components->kind);
+    return json_pack("{s:i, s:s, s:b, s:f, s:[f, f], s:i, s:i}", "count", components->component_count, "maps_over",
+                     over_half_vector ? "half vector" : "light", "kriged", weft_components_are_kriged(components->kind),
+                     "exponent", (double)components->exponent, "powers", (double)components->incidence_power,
+                     (double)components->cosine_power, "views", components->view_count, "images",
+                     components->image_count);
 }
 
 static json_t *describe_material(const char *path, const weft_material *material, const weft_hold_out *held_out)

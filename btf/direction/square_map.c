@@ -18,6 +18,22 @@ weft_place weft_place_of_half_vector(weft_vec3 half_vector)
     return (weft_place){(weft_real)0.5 + copysign(x, half_vector.x), (weft_real)0.5 + copysign(y, half_vector.y)};
 }
 
+weft_vec3 weft_direction_of_place(weft_place place)
+{
+    weft_real x = 2 * place.x - 1, y = 2 * place.y - 1, square = x * x + y * y;
+    return (weft_vec3){2 * x / (1 + square), 2 * y / (1 + square), (1 - square) / (1 + square)};
+}
+
+weft_vec3 weft_half_vector_of_place(weft_place place)
+{
+    weft_real x = place.x - (weft_real)0.5, y = place.y - (weft_real)0.5;
+    weft_real radius = fmax(fabs(x), fabs(y)), least = fmin(fabs(x), fabs(y));
+    weft_real angle = radius > 0 ? (weft_real)(WEFT_PI / 4) * least / radius : 0;
+    weft_real z = 1 - 4 * radius * radius, across = sqrt(fmax((weft_real)0, 1 - z * z));
+    weft_real near = across * cos(angle), far = across * sin(angle);
+    return (weft_vec3){copysign(fabs(x) >= fabs(y) ? near : far, x), copysign(fabs(x) >= fabs(y) ? far : near, y), z};
+}
+
 weft_square_cell weft_square_cell_at(weft_place place, int side)
 {
     weft_real last = (weft_real)(side - 1);

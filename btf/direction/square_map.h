@@ -21,6 +21,11 @@ weft_place weft_place_of_direction(weft_vec3 direction);
  * the square. It spends more nodes near the normal than the paraboloid does. */
 weft_place weft_place_of_half_vector(weft_vec3 half_vector);
 
+/* Their inverses. The corners of the square, outside the disc of the paraboloid, are unit directions below the horizon.
+ */
+weft_vec3 weft_direction_of_place(weft_place place);
+weft_vec3 weft_half_vector_of_place(weft_place place);
+
 /* The four nodes around a place and their weights, which sum to 1. Node (i, j) of a square of side x side nodes lies at
  * (i, j) / (side - 1) and has the index j side + i. Places outside the square count as the nearest on its border. side
  * >= 2. */

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { HEADER_WORDS = 16 };
+enum { HEADER_WORDS = 16, SMOOTH_WORDS = 10, KRIGED_WORDS = 14 };
 
 /* The arrays in the order of the file, with their bytes. */
-enum { SCALES = 3, VALUES, ARRAYS };
+enum { SCALES = 3, LENGTHS, NUGGETS, VALUES, ARRAYS };
 typedef struct array_list {
     void *array[ARRAYS];
     size_t size[ARRAYS];
@@ -18,8 +18,10 @@ static array_list arrays_of(const weft_components *components)
 {
     size_t views = (size_t)components->view_count, images = (size_t)components->image_count;
     size_t count = (size_t)components->component_count;
-    return (array_list){{components->view, components->light, components->first, components->scale, components->value},
-                        {12 * views, 12 * images, 4 * (views + 1), 4 * count, 6 * images * count}};
+    size_t kriged = weft_components_are_kriged(components->kind) ? 4 * count : 0;
+    return (array_list){{components->view, components->light, components->first, components->scale, components->length,
+                         components->nugget, components->value},
+                        {12 * views, 12 * images, 4 * (views + 1), 4 * count, kriged, kriged, 6 * images * count}};
 }
 
 static size_t weights_size(const weft_components *components, weft_value_coding coding)
@@ -42,11 +44,15 @@ static void write_shape(const weft_components *components, uint8_t *bytes)
     const uint32_t whole[] = {(uint32_t)components->kind,       (uint32_t)components->component_count,
                               (uint32_t)components->view_count, (uint32_t)components->image_count,
                               (uint32_t)components->light_side, (uint32_t)components->view_side};
-    const float real[] = {components->light_smoothness, components->view_smoothness, components->least_cosine,
-                          components->view_variance_threshold};
+    const float smooth[] = {components->light_smoothness, components->view_smoothness, components->least_cosine,
+                            components->view_variance_threshold},
+                kriged[] = {components->trend,        components->view_length,    components->least_cosine,
+                            components->view_nugget,  components->exponent,       components->incidence_power,
+                            components->cosine_power, components->least_incidence};
+    bool is_kriged = weft_components_are_kriged(components->kind);
     memset(bytes, 0, 4 * HEADER_WORDS);
     memcpy(bytes, whole, sizeof whole);
-    memcpy(bytes + sizeof whole, real, sizeof real);
+    memcpy(bytes + sizeof whole, is_kriged ? kriged : smooth, is_kriged ? sizeof kriged : sizeof smooth);
 }
 
 void weft_components_section_write(const weft_components *components, uint8_t *bytes)
@@ -71,20 +77,31 @@ void weft_components_section_write(const weft_components *components, uint8_t *b
 static weft_components shape_of(const uint8_t *bytes)
 {
     uint32_t whole[6];
-    float real[4];
+    float real[8];
     memcpy(whole, bytes, sizeof whole);
     memcpy(real, bytes + sizeof whole, sizeof real);
-    return (weft_components){.kind = whole[0] < WEFT_COMPONENTS_KINDS ? (weft_components_kind)whole[0]
+    weft_components shape = {.kind = whole[0] < WEFT_COMPONENTS_KINDS ? (weft_components_kind)whole[0]
                                                                       : WEFT_COMPONENTS_KINDS,
                              .component_count = weft_limited_int(whole[1]),
                              .view_count = weft_limited_int(whole[2]),
                              .image_count = weft_limited_int(whole[3]),
                              .light_side = weft_limited_int(whole[4]),
                              .view_side = weft_limited_int(whole[5]),
-                             .light_smoothness = real[0],
-                             .view_smoothness = real[1],
                              .least_cosine = real[2],
-                             .view_variance_threshold = real[3]};
+                             .exponent = real[4],
+                             .incidence_power = real[5],
+                             .cosine_power = real[6],
+                             .least_incidence = real[7]};
+    if (weft_components_are_kriged(shape.kind)) {
+        shape.trend = real[0];
+        shape.view_length = real[1];
+        shape.view_nugget = real[3];
+    } else {
+        shape.light_smoothness = real[0];
+        shape.view_smoothness = real[1];
+        shape.view_variance_threshold = real[3];
+    }
+    return shape;
 }
 
 static const char *fault_of_directions(const float *xyz, int count)
@@ -112,6 +129,16 @@ static const char *fault_of_values(const weft_components *components)
     return NULL;
 }
 
+static const char *fault_of_lengths(const weft_components *components)
+{
+    for (int k = 0; k < components->component_count; k++) {
+        float length = components->length[k], nugget = components->nugget[k];
+        if (!(length >= 1e-3f && length <= 1e3f && nugget >= 1e-6f && nugget <= 1e3f))
+            return "holds a length or a nugget out of range";
+    }
+    return NULL;
+}
+
 static const char *fault_of_arrays(const weft_components *components)
 {
     const char *fault = fault_of_directions(components->view, components->view_count);
@@ -123,7 +150,12 @@ static const char *fault_of_arrays(const weft_components *components)
     for (int i = 0; i < components->view_count && !fault; i++) {
         if (components->first[i] >= components->first[i + 1])
             fault = "has views that are empty or out of order";
+        else if (weft_components_are_kriged(components->kind) &&
+                 components->first[i + 1] - components->first[i] > WEFT_KRIGED_MAX_LIGHTS)
+            fault = "has too many lights in a view for kriged maps";
     }
+    if (!fault && weft_components_are_kriged(components->kind))
+        fault = fault_of_lengths(components);
     return fault;
 }
 
@@ -157,18 +189,27 @@ static const char *read_arrays(const uint8_t *bytes, weft_value_coding coding, w
     return fault ? fault : fault_of_values(components);
 }
 
+static const char *fault_of_header(const uint8_t *bytes, weft_value_coding coding, const weft_components *shape)
+{
+    static const uint8_t unused[4 * (HEADER_WORDS - SMOOTH_WORDS)] = {0};
+    bool kriged = shape->kind < WEFT_COMPONENTS_KINDS && weft_components_are_kriged(shape->kind);
+    size_t used = kriged ? KRIGED_WORDS : SMOOTH_WORDS;
+    if (memcmp(bytes + 4 * used, unused, 4 * (HEADER_WORDS - used)) != 0)
+        return "has reserved fields that are not zero";
+    if (kriged && coding != WEFT_VALUES_BY_WEIGHTED_DIFFERENCES)
+        return "holds components of an unknown kind";
+    return weft_components_fault_of_shape(shape);
+}
+
 weft_code weft_components_section_read(const uint8_t *bytes, size_t size, weft_value_coding coding, int width,
                                        int height, int level_count, weft_components **result, const char **fault,
                                        weft_error *error)
 {
     *fault = size < 4 * HEADER_WORDS ? "is too short" : NULL;
     weft_components shape = {0};
-    static const uint8_t unused[4 * (HEADER_WORDS - 10)] = {0};
-    if (!*fault && memcmp(bytes + 40, unused, sizeof unused) != 0)
-        *fault = "has reserved fields that are not zero";
     if (!*fault) {
         shape = shape_of(bytes);
-        *fault = weft_components_fault_of_shape(&shape);
+        *fault = fault_of_header(bytes, coding, &shape);
     }
     if (!*fault && size != weft_components_section_size(&shape, coding))
         *fault = "its size does not fit its counts";

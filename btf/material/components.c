@@ -24,6 +24,8 @@ static weft_code allocate_shared(weft_components *components, weft_error *error)
     WEFT_TRY(allocate(&components->light, 3 * images, sizeof *components->light, error));
     WEFT_TRY(allocate(&components->first, views + 1, sizeof *components->first, error));
     WEFT_TRY(allocate(&components->scale, count, sizeof *components->scale, error));
+    WEFT_TRY(allocate(&components->length, count, sizeof *components->length, error));
+    WEFT_TRY(allocate(&components->nugget, count, sizeof *components->nugget, error));
     return allocate(&components->value, 3 * images * count, sizeof *components->value, error);
 }
 
@@ -43,6 +45,36 @@ static weft_code allocate_levels(weft_components *components, int width, int hei
     return WEFT_OK;
 }
 
+static const char *fault_of_smoothness(const weft_components *shape)
+{
+    if (!(shape->light_smoothness > 0 && shape->light_smoothness < 1e6f && shape->view_smoothness > 0 &&
+          shape->view_smoothness < 1e6f))
+        return "holds a smoothness or a cosine out of range";
+    if (!(shape->view_variance_threshold >= 0 && shape->view_variance_threshold < 1e6f))
+        return "holds a view-variance threshold out of range";
+    return NULL;
+}
+
+static bool is_within(float value, float least, float most)
+{
+    return value >= least && value <= most;
+}
+
+static const char *fault_of_kriging(const weft_components *shape)
+{
+    if (shape->view_count > WEFT_KRIGED_MAX_VIEWS)
+        return "has too many views for kriged maps";
+    if (shape->light_side > WEFT_KRIGED_MAX_SIDE || shape->view_side > WEFT_KRIGED_MAX_SIDE)
+        return "has kriged maps that are more than 32 nodes wide";
+    if (!is_within(shape->exponent, 1, 4) || !is_within(shape->incidence_power, 0, 4) ||
+        !is_within(shape->cosine_power, -2, 2) || !is_within(shape->least_incidence, 1e-3f, 1))
+        return "holds an exponent or a power out of range";
+    if (!is_within(shape->view_length, 1e-3f, 1e3f) || !is_within(shape->view_nugget, 1e-6f, 1e3f) ||
+        !is_within(shape->trend, 0, 1e3f))
+        return "holds a length, a nugget or a trend out of range";
+    return NULL;
+}
+
 const char *weft_components_fault_of_shape(const weft_components *shape)
 {
     if (shape->kind < 0 || shape->kind >= WEFT_COMPONENTS_KINDS)
@@ -56,12 +88,40 @@ const char *weft_components_fault_of_shape(const weft_components *shape)
     if (shape->light_side < LEAST_SIDE || shape->light_side > MOST_SIDE || shape->view_side < LEAST_SIDE ||
         shape->view_side > MOST_SIDE)
         return "has maps that are not 4 to 64 nodes wide";
-    if (!(shape->light_smoothness > 0 && shape->light_smoothness < 1e6f && shape->view_smoothness > 0 &&
-          shape->view_smoothness < 1e6f && shape->least_cosine > 0 && shape->least_cosine <= 1))
+    if (!(shape->least_cosine > 0 && shape->least_cosine <= 1))
         return "holds a smoothness or a cosine out of range";
-    if (!(shape->view_variance_threshold >= 0 && shape->view_variance_threshold < 1e6f))
-        return "holds a view-variance threshold out of range";
-    return NULL;
+    return weft_components_are_kriged(shape->kind) ? fault_of_kriging(shape) : fault_of_smoothness(shape);
+}
+
+void weft_components_set_implied(weft_components *components)
+{
+    components->exponent = 1;
+    components->incidence_power = (float)(components->kind - WEFT_COMPONENTS_OF_LIGHT);
+    components->cosine_power = 0;
+    components->least_incidence = WEFT_LEAST_INCIDENCE;
+}
+
+static void copy_numbers(const weft_components *shape, weft_components *components)
+{
+    *components = (weft_components){.kind = shape->kind,
+                                    .component_count = shape->component_count,
+                                    .view_count = shape->view_count,
+                                    .image_count = shape->image_count,
+                                    .light_side = shape->light_side,
+                                    .view_side = shape->view_side,
+                                    .light_smoothness = shape->light_smoothness,
+                                    .view_smoothness = shape->view_smoothness,
+                                    .exponent = shape->exponent,
+                                    .incidence_power = shape->incidence_power,
+                                    .cosine_power = shape->cosine_power,
+                                    .least_incidence = shape->least_incidence,
+                                    .view_length = shape->view_length,
+                                    .view_nugget = shape->view_nugget,
+                                    .trend = shape->trend,
+                                    .view_variance_threshold = shape->view_variance_threshold,
+                                    .least_cosine = shape->least_cosine};
+    if (!weft_components_are_kriged(shape->kind))
+        weft_components_set_implied(components);
 }
 
 weft_code weft_components_create(const weft_components *shape, int width, int height, int level_count,
@@ -73,17 +133,8 @@ weft_code weft_components_create(const weft_components *shape, int width, int he
     weft_components *components = calloc(1, sizeof *components);
     if (!components)
         return weft_fail_memory(error, "components", sizeof *components);
-    *components = (weft_components){.kind = shape->kind,
-                                    .component_count = shape->component_count,
-                                    .view_count = shape->view_count,
-                                    .image_count = shape->image_count,
-                                    .light_side = shape->light_side,
-                                    .view_side = shape->view_side,
-                                    .light_smoothness = shape->light_smoothness,
-                                    .view_smoothness = shape->view_smoothness,
-                                    .view_variance_threshold = shape->view_variance_threshold,
-                                    .least_cosine = shape->least_cosine,
-                                    .level_count = level_count};
+    copy_numbers(shape, components);
+    components->level_count = level_count;
     weft_code code = allocate_shared(components, error);
     if (code == WEFT_OK)
         code = allocate_levels(components, width, height, error);
@@ -109,6 +160,8 @@ void weft_components_free(weft_components *components)
     free(components->light);
     free(components->first);
     free(components->scale);
+    free(components->length);
+    free(components->nugget);
     free(components->value);
     for (int k = 0; k < components->level_count; k++)
         free_level(&components->level[k]);

@@ -3,20 +3,20 @@
  *
  * For each colour channel, r = reflectance times cosine, as in the dataset:
  *
- *     r(l, v) = sum_k c_k B_k(l, v),   held to the floor of the texel times l_z
- *                                      .. the ceiling of the texel times min(1, l_z / least_cosine)
+ *     s(l, v) = sum_k c_k B_k(l, v),   r = max(0, s)^exponent, clamped (reflectance/components/components.h)
  *
+ * With an exponent of 1 the components add linear light; with more they add coded values, as a screen shows them.
  * c_k are whole numbers of -127 .. 127, the most important first, so that the first few alone are a coarser material.
- * B_k is stored as its values at the images of a dataset. Between them it is a smooth map (btf/direction/smooth_map.h):
- * first over the lights of each view, then over the views.
+ * B_k is stored as its values at the images of a dataset. Between them it is a map: first over the lights of each view,
+ * then over the views.
  *
- *     WEFT_COMPONENTS_OF_LIGHT: at a node of the view map, a paraboloid map of l holds B_k
- *     WEFT_COMPONENTS_OF_HALF_VECTOR: a concentric map of h = (l + v) / |l + v| holds B_k (l . h)
- *     WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED: the same map holds B_k (l . h)^2
+ *     over the light: at a node of the view map, a paraboloid map of l holds B_k
+ *     over the half vector: a concentric map of h = (l + v) / |l + v| holds B_k g(l, v)^(1 / exponent)
  *
- * A highlight of a mirror stays at one half vector whatever the view, so that the other two interpolate it between
- * lights and views that are far apart; how it grows towards the horizon tells them apart. All maps are 0 where the
- * light is at the horizon.
+ * g = (l . h)^incidence_power l_z^cosine_power. A highlight of a mirror stays at one half vector whatever the view, so
+ * that maps over it interpolate between lights and views that are far apart; g tells how it grows towards the horizon.
+ * Kriged maps (reflectance/components/kriged_maps.c) are found by lengths and nuggets; the others, which earlier
+ * versions wrote, are smooth maps (btf/direction/smooth_map.h) that are 0 where the light is at the horizon.
  *
  * Interpolation is linear in the coefficients: texels and mip levels are filtered before anything is evaluated. */
 #ifndef WEFT_BTF_MATERIAL_COMPONENTS_H
@@ -26,17 +26,33 @@
 #include "base/status.h"
 #include "base/vector.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
+/* l . h is taken as at least this by the kinds of earlier versions, and where images say no more. */
+#define WEFT_LEAST_INCIDENCE 0.0625f
+
 typedef enum weft_components_kind {
     WEFT_COMPONENTS_OF_LIGHT,
     WEFT_COMPONENTS_OF_HALF_VECTOR,
     WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED,
+    WEFT_COMPONENTS_KRIGED_OVER_LIGHT,
+    WEFT_COMPONENTS_KRIGED_OVER_HALF_VECTOR,
     WEFT_COMPONENTS_KINDS
 } weft_components_kind;
+
+static inline bool weft_components_are_kriged(weft_components_kind kind)
+{
+    return kind >= WEFT_COMPONENTS_KRIGED_OVER_LIGHT;
+}
+
+static inline bool weft_components_are_over_half_vector(weft_components_kind kind)
+{
+    return kind != WEFT_COMPONENTS_OF_LIGHT && kind != WEFT_COMPONENTS_KRIGED_OVER_LIGHT;
+}
 
 enum {
     WEFT_COMPONENTS_MAX = 64,
@@ -45,7 +61,10 @@ enum {
     WEFT_COMPONENTS_LARGEST_CODE = 127,
     WEFT_CEILING_SIDE = 8, /* texels along a side of a square that has one ceiling and one floor */
     WEFT_COMPONENTS_MAX_IMAGES = 1 << 20,
-    WEFT_COMPONENTS_MAX_VIEWS = 4096
+    WEFT_COMPONENTS_MAX_VIEWS = 4096,
+    WEFT_KRIGED_MAX_SIDE = 32,
+    WEFT_KRIGED_MAX_VIEWS = 256, /* of kriged maps, whose equations are dense ... */
+    WEFT_KRIGED_MAX_LIGHTS = 512 /* ... and of the lights of a view */
 };
 
 /* The coefficients of one mip level. */
@@ -65,20 +84,67 @@ typedef struct weft_components {
     int view_side;          /* of those over v */
     float light_smoothness; /* of the same maps */
     float view_smoothness;
-    float least_cosine;            /* of the lights: nearer the horizon r falls in proportion to l_z, 0 < it <= 1 */
-    float view_variance_threshold; /* variance of a node over l or h at which its view counts a quarter; 0: all count
-                                      alike */
-    float *view;                   /* [view_count][3] unit, z > 0 */
-    float *light;                  /* [image_count][3] unit, z > 0; view by view */
-    uint32_t *first;               /* [view_count + 1] the images of view i are first[i] .. first[i + 1] - 1 */
-    float *scale;                  /* [component_count] what a coefficient of 1 and a value of 1 stand for */
-    weft_half *value;              /* [image_count][component_count][3] B_k, divided by its scale */
+    float exponent;        /* 1 .. 4: of the sum of the components */
+    float incidence_power; /* of l . h, 0 .. 4 */
+    float cosine_power;    /* of l_z, -2 .. 2 */
+    float least_incidence; /* l . h is taken as at least this, 0 < it <= 1 */
+    /* Of kriged maps (btf/direction/kriged_map.h): */
+    float view_length, view_nugget; /* over the views, ordinary */
+    float *length, *nugget;         /* [component_count] over the light or half vector ... */
+    float trend;                    /* ... and of all of these, 0 .. 1000 */
+    float least_cosine;             /* of the lights: nearer the horizon r falls in proportion to l_z, 0 < it <= 1 */
+    float view_variance_threshold;  /* variance of a node over l or h at which its view counts a quarter; 0: all count
+                                       alike */
+    float *view;                    /* [view_count][3] unit, z > 0 */
+    float *light;                   /* [image_count][3] unit, z > 0; view by view */
+    uint32_t *first;                /* [view_count + 1] the images of view i are first[i] .. first[i + 1] - 1 */
+    float *scale;                   /* [component_count] what a coefficient of 1 and a value of 1 stand for */
+    weft_half *value;               /* [image_count][component_count][3] B_k, divided by its scale */
     int level_count;
     weft_components_level level[WEFT_COMPONENTS_MAX_LEVELS];
 } weft_components;
 
-/* Allocates all arrays, zeroed, for the counts that are set in `shape`; sizes of levels are those of the mip chain of
- * width x height. Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. The caller frees with
+/* The powers that the kinds of earlier versions imply: linear values, l . h by the kind, at least 1/16. */
+void weft_components_set_implied(weft_components *components);
+
+/* base^exponent for base >= 2^-100, to 1e-5 of it, and less than 1e-12 below; here, and without branches, so that loops
+ * over all samples become vectors. Pure. */
+static inline float weft_power(float base, float exponent)
+{
+    const float least = 0x1p-100f, one_over_ln_2 = 1.44269504f, ln_2 = 0.69314718f;
+    base = base > least ? base : least;
+    int32_t bits, shift;
+    memcpy(&bits, &base, sizeof bits);
+    shift = (bits - 0x3f3504f3) >> 23; /* the mantissa from the root of 1/2 to that of 2 */
+    bits -= shift * (1 << 23);
+    float mantissa;
+    memcpy(&mantissa, &bits, sizeof mantissa);
+    float t = (mantissa - 1) / (mantissa + 1), u = t * t;
+    float series = 2 * t * (1 + u * (1.0f / 3 + u * (1.0f / 5 + u * (1.0f / 7 + u / 9))));
+    float power = exponent * ((float)shift + one_over_ln_2 * series);
+    float whole = (float)(int32_t)(power + (power > 0 ? 0.5f : -0.5f)), rest = ln_2 * (power - whole);
+    float part = 1 + rest * (1 + rest * (1.0f / 2 + rest * (1.0f / 6 + rest * (1.0f / 24 + rest / 120))));
+    int32_t scale = ((int32_t)(whole > -126 ? whole : -126) + 127) * (1 << 23);
+    float result;
+    memcpy(&result, &scale, sizeof result);
+    return result * part;
+}
+
+/* r of a sum s of components: max(0, s)^exponent, but s itself where the exponent is 1. Pure. */
+static inline float weft_decoded(float exponent, float sum)
+{
+    return exponent == 1 ? sum : weft_power(sum, exponent);
+}
+
+/* The s that gives r >= 0: its inverse. Pure. */
+static inline float weft_coded(float exponent, float value)
+{
+    return exponent == 1 ? value : weft_power(value, 1 / exponent);
+}
+
+/* Allocates all arrays, zeroed, for the counts that are set in `shape`, whose other numbers are copied; those of kinds
+ * of earlier versions are implied. Sizes of levels are those of the mip
+ * chain of width x height. Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. The caller frees with
  * weft_components_free.
  */
 weft_code weft_components_create(const weft_components *shape, int width, int height, int level_count,

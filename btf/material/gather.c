@@ -160,6 +160,8 @@ static void copy_shared(const weft_components *from, weft_components *to)
     memcpy(to->light, from->light, 3 * images * sizeof *from->light);
     memcpy(to->first, from->first, (views + 1) * sizeof *from->first);
     memcpy(to->scale, from->scale, count * sizeof *from->scale);
+    memcpy(to->length, from->length, count * sizeof *from->length);
+    memcpy(to->nugget, from->nugget, count * sizeof *from->nugget);
     memcpy(to->value, from->value, 3 * images * count * sizeof *from->value);
 }
 

@@ -41,7 +41,7 @@ static void list_cells(weft_vec3 direction, double margin_rad, cell_list *list)
 /* What a map over the lights of a view is of: the light, or the half vector. Unit. */
 static weft_vec3 inner_direction(const weft_components *components, weft_vec3 light, weft_vec3 view)
 {
-    return components->kind == WEFT_COMPONENTS_OF_LIGHT ? light : weft_unit(weft_add(light, view));
+    return weft_components_are_over_half_vector(components->kind) ? weft_unit(weft_add(light, view)) : light;
 }
 
 /* Keeps the images of a view within an angle of `reached` in its map. */
@@ -163,6 +163,8 @@ weft_code weft_prune_copy_components(const weft_components *from, int count, wef
     memcpy(to->light, from->light, 3 * images * sizeof *to->light);
     memcpy(to->first, from->first, (views + 1) * sizeof *to->first);
     memcpy(to->scale, from->scale, (size_t)count * sizeof *to->scale);
+    memcpy(to->length, from->length, (size_t)count * sizeof *to->length);
+    memcpy(to->nugget, from->nugget, (size_t)count * sizeof *to->nugget);
     for (size_t i = 0; i < images; i++)
         memcpy(to->value + i * row, from->value + i * 3 * (size_t)from->component_count, row * sizeof *to->value);
     for (int k = 0; k < from->level_count; k++) {

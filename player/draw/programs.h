@@ -20,9 +20,9 @@ typedef struct weft_variant {
     bool threads;      /* analytic: microcylinders, else a weave */
     bool noise;        /* analytic: that of the weave */
     /* Of the compressed material: */
-    int component_groups; /* four components each, in the place of lobes; 0: lobes */
-    int drawn_groups;     /* the first of them, which are evaluated */
-    int incidence_power;  /* of the maps of the components (player/texture/material_texture.h) */
+    int component_groups;          /* four components each, in the place of lobes; 0: lobes */
+    int drawn_groups;              /* the first of them, which are evaluated */
+    bool over_half_vector, kriged; /* their maps (player/texture/material_texture.h) */
     int lobe_count;
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */

@@ -72,7 +72,8 @@ weft_variant weft_player_variant(const weft_player *p, const weft_scene *scene, 
         variant.pruned = scene->show_extrapolation && p->material.visibility.maps;
         variant.component_groups = uses_components(p, scene) ? p->material.components.group_count : 0;
         variant.drawn_groups = weft_player_drawn_components(p, scene) / WEFT_COMPONENTS_GROUP;
-        variant.incidence_power = p->material.components.incidence_power;
+        variant.over_half_vector = p->material.components.over_half_vector;
+        variant.kriged = p->material.components.kriged;
         variant.opacity = variant.component_groups > 0 && !p->material.opaque;
         variant.relief = variant.component_groups > 0 && scene->relief && p->material.relief.height;
     }

@@ -212,6 +212,11 @@ void weft_gl_set_vec3(GLuint program, const char *name, double x, double y, doub
     glUniform3f(weft_gl_uniform(program, name), (float)x, (float)y, (float)z);
 }
 
+void weft_gl_set_vec4(GLuint program, const char *name, double x, double y, double z, double w)
+{
+    glUniform4f(weft_gl_uniform(program, name), (float)x, (float)y, (float)z, (float)w);
+}
+
 /* ---- Textures ---- */
 
 void weft_gl_bind(GLuint program, const char *name, int unit, GLenum target, GLuint texture)

@@ -29,6 +29,7 @@ void weft_gl_set_int(GLuint program, const char *name, int value);
 void weft_gl_set_float(GLuint program, const char *name, double value);
 void weft_gl_set_vec2(GLuint program, const char *name, double x, double y);
 void weft_gl_set_vec3(GLuint program, const char *name, double x, double y, double z);
+void weft_gl_set_vec4(GLuint program, const char *name, double x, double y, double z, double w);
 
 /* Binds a texture to a unit and tells the sampler `name`. */
 void weft_gl_bind(GLuint program, const char *name, int unit, GLenum target, GLuint texture);

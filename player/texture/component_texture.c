@@ -202,7 +202,12 @@ weft_code weft_component_texture_upload(const weft_components *components, const
                                   .group_count = components->component_count / WEFT_COMPONENTS_GROUP,
                                   .light_side = components->light_side,
                                   .view_side = components->view_side,
-                                  .incidence_power = components->kind - WEFT_COMPONENTS_OF_LIGHT,
+                                  .over_half_vector = weft_components_are_over_half_vector(components->kind),
+                                  .kriged = weft_components_are_kriged(components->kind),
+                                  .exponent = components->exponent,
+                                  .incidence_power = components->incidence_power,
+                                  .cosine_power = components->cosine_power,
+                                  .least_incidence = components->least_incidence,
                                   .least_cosine = components->least_cosine};
     WEFT_TRY(upload_coefficients(components, t, error));
     WEFT_TRY(upload_bounds(components, t, error));
@@ -248,4 +253,6 @@ void weft_component_texture_bind(const weft_component_texture *t, GLuint program
     set_areas(&t->bounds_layout, program, "bounds_area", "bounds_step");
     weft_gl_set_vec2(program, "component_sides", t->light_side, t->view_side);
     weft_gl_set_float(program, "least_cosine", (double)t->least_cosine);
+    weft_gl_set_vec4(program, "component_powers", (double)t->incidence_power, (double)t->cosine_power,
+                     (double)t->exponent, (double)t->least_incidence);
 }

@@ -24,8 +24,8 @@ typedef struct weft_component_texture {
     int view_count;
     weft_mip_layout layout, bounds_layout;
     int group_count, light_side, view_side;
-    int incidence_power; /* of l . h in maps over half vectors: 1 or 2; 0: the maps are over the light */
-    float least_cosine;
+    bool over_half_vector, kriged; /* maps; else over the light, smooth */
+    float exponent, incidence_power, cosine_power, least_incidence, least_cosine; /* btf/material/components.h */
 } weft_component_texture;
 
 /* Uploads what `components` hold, and with `entry_of_view` [view_count] what is needed to look from their views: the

@@ -9,17 +9,20 @@
 
 static weft_square_cell light_cell(const weft_components *components, weft_vec3 light, weft_vec3 half_vector)
 {
-    weft_place place = components->kind == WEFT_COMPONENTS_OF_LIGHT ? weft_place_of_direction(light)
-                                                                    : weft_place_of_half_vector(half_vector);
+    weft_place place = weft_components_are_over_half_vector(components->kind) ? weft_place_of_half_vector(half_vector)
+                                                                              : weft_place_of_direction(light);
     return weft_square_cell_at(place, components->light_side);
 }
 
-weft_real weft_components_divisor(weft_components_kind kind, weft_vec3 light, weft_vec3 half_vector)
+weft_real weft_components_divisor(const weft_components *components, weft_vec3 light, weft_vec3 half_vector)
 {
-    if (kind == WEFT_COMPONENTS_OF_LIGHT)
+    if (!weft_components_are_over_half_vector(components->kind))
         return 1;
-    weft_real incidence = fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
-    return kind == WEFT_COMPONENTS_OF_HALF_VECTOR ? incidence : incidence * incidence;
+    weft_real incidence = fmax(weft_dot(light, half_vector), (weft_real)components->least_incidence);
+    weft_real cosine = fmax(light.z, (weft_real)WEFT_LEAST_COSINE);
+    weft_real exponent = (weft_real)components->exponent;
+    return pow(incidence, (weft_real)components->incidence_power / exponent) *
+           pow(cosine, (weft_real)components->cosine_power / exponent);
 }
 
 void weft_component_factors(const weft_component_maps *maps, weft_vec3 light, weft_vec3 view, float *factor)
@@ -32,7 +35,7 @@ void weft_component_factors(const weft_component_maps *maps, weft_vec3 light, we
     weft_vec3 half_vector = weft_half_vector(light, view);
     weft_square_cell outer = weft_square_cell_at(weft_place_of_direction(view), components->view_side),
                      inner = light_cell(components, light, half_vector);
-    weft_real divisor = weft_components_divisor(components->kind, light, half_vector);
+    weft_real divisor = weft_components_divisor(components, light, half_vector);
     size_t light_nodes = (size_t)components->light_side * (size_t)components->light_side;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
@@ -54,7 +57,7 @@ void weft_component_factors_of_view(const weft_component_maps *maps, weft_vec3 l
     const float *xyz = components->view + 3 * (size_t)view;
     weft_vec3 half_vector = weft_half_vector(light, weft_vec3_of(xyz[0], xyz[1], xyz[2]));
     weft_square_cell inner = light_cell(components, light, half_vector);
-    weft_real divisor = weft_components_divisor(components->kind, light, half_vector);
+    weft_real divisor = weft_components_divisor(components, light, half_vector);
     for (int j = 0; j < 4; j++) {
         const float *node = maps->node_of_view + ((size_t)view * nodes + (size_t)inner.index[j]) * series;
         float weight = (float)(inner.weight[j] / divisor);
@@ -91,12 +94,19 @@ static bounds bounds_at(const weft_components_level *level, int x, int y)
                     (weft_real)weft_ceiling_of_code(level->ceiling[square])};
 }
 
-static weft_rgb held(const weft_components *components, weft_rgb value, const bounds *within, weft_real light_z)
+/* Decoded, and then held: channels of kriged maps are scaled down alike, so that what is too bright keeps its hue. */
+static weft_rgb decoded(const weft_components *components, weft_rgb sum, const bounds *within, weft_real light_z)
 {
     weft_real most = within->ceiling * fmin((weft_real)1, light_z / (weft_real)components->least_cosine);
     const weft_real *least = within->floor;
-    return (weft_rgb){fmin(fmax(value.r, least[0] * light_z), most), fmin(fmax(value.g, least[1] * light_z), most),
-                      fmin(fmax(value.b, least[2] * light_z), most)};
+    weft_rgb value = {fmax((weft_real)weft_decoded(components->exponent, (float)sum.r), least[0] * light_z),
+                      fmax((weft_real)weft_decoded(components->exponent, (float)sum.g), least[1] * light_z),
+                      fmax((weft_real)weft_decoded(components->exponent, (float)sum.b), least[2] * light_z)};
+    if (!weft_components_are_kriged(components->kind))
+        return (weft_rgb){fmin(value.r, most), fmin(value.g, most), fmin(value.b, most)};
+    weft_real brightest = fmax(value.r, fmax(value.g, value.b));
+    weft_real scale = brightest > most ? most / brightest : 1;
+    return (weft_rgb){scale * value.r, scale * value.g, scale * value.b};
 }
 
 /* Adds `weight` times the coefficients of texel (x, y). */
@@ -120,7 +130,7 @@ weft_rgb weft_components_texel(const weft_components *components, int count, con
         return (weft_rgb){0};
     add_coefficients(at, count, x, y, 1, coefficient);
     bounds within = bounds_at(at, x, y);
-    return held(components, combine(count, coefficient, factor), &within, light_z);
+    return decoded(components, combine(count, coefficient, factor), &within, light_z);
 }
 
 /* ---- Texture coordinates ---- */
@@ -151,7 +161,7 @@ weft_rgb weft_components_sample(const weft_components *components, int count, co
     bounds within = add_level(&components->level[fine], count, u, v, 1 - share, coefficient);
     if (share > 0)
         add_level(&components->level[fine + 1], count, u, v, share, coefficient);
-    return held(components, combine(count, coefficient, factor), &within, light_z);
+    return decoded(components, combine(count, coefficient, factor), &within, light_z);
 }
 
 /* ---- Through heights ---- */

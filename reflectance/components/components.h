@@ -18,17 +18,17 @@ static inline weft_vec3 weft_half_vector(weft_vec3 light, weft_vec3 view)
  * threads may evaluate. */
 typedef struct weft_component_maps {
     const weft_components *components;
-    float *node; /* [view node][light node][layer][3] B_k, or B_k (l . h)^1 or 2, times the scale of the layer */
+    float *node; /* [view node][light node][layer][3] B_k, or B_k g^(1 / exponent), times the scale of the layer */
     float *node_of_view; /* [stored view][light node][layer][3] the same for each stored view by itself; NULL unless
                             weft_component_maps_keep_views */
 } weft_component_maps;
 
-/* l . h is taken as at least this where a map is divided by it: below, light and view both graze from opposite sides.
- */
-#define WEFT_LEAST_INCIDENCE 0.0625
+/* l_z is taken as at least this where it is the base of a power. */
+#define WEFT_LEAST_COSINE 0.015625
 
-/* What a map is divided by where its kind is that of half vectors: (l . h) or (l . h)^2; 1 of the others. Pure. */
-weft_real weft_components_divisor(weft_components_kind kind, weft_vec3 light, weft_vec3 half_vector);
+/* What a map over the half vector is divided by: g(l, v)^(1 / exponent) (btf/material/components.h); 1 of maps over the
+ * light. Pure. */
+weft_real weft_components_divisor(const weft_components *components, weft_vec3 light, weft_vec3 half_vector);
 
 /* Computes the maps. The caller frees them with weft_component_maps_free. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_component_maps_create(const weft_components *components, weft_component_maps *maps, weft_error *error);
@@ -47,8 +47,9 @@ void weft_component_factors(const weft_component_maps *maps, weft_vec3 light, we
 void weft_component_factors_of_view(const weft_component_maps *maps, weft_vec3 light, int view, float *factor);
 
 /* Reflectance times cosine of texel (x, y) of a level as the first `count` components give it (a multiple of 4; at most
- * component_count), from the factors of the light and the view, which is above the horizon: held to the floor .. the
- * ceiling. Thread-safe. */
+ * component_count), from the factors of the light and the view, which is above the horizon: decoded, at least the floor
+ * of each channel times l_z, and at most the upper bound times min(1, l_z / least_cosine): the channels of kriged maps
+ * are scaled down alike, others by themselves. Thread-safe. */
 weft_rgb weft_components_texel(const weft_components *components, int count, const float *factor, int level, int x,
                                int y, weft_real light_z);
 

@@ -326,7 +326,15 @@ enum { SIDE = 16, SHARED = 4, SHOTS = 300 };
 
 static weft_components *make_components(void)
 {
-    const weft_components shape = {WEFT_COMPONENTS_OF_LIGHT, SHARED, 1, SHOTS, 8, 4, 1, 1, 0.1f, .scale = NULL};
+    const weft_components shape = {.kind = WEFT_COMPONENTS_OF_LIGHT,
+                                   .component_count = SHARED,
+                                   .view_count = 1,
+                                   .image_count = SHOTS,
+                                   .light_side = 8,
+                                   .view_side = 4,
+                                   .light_smoothness = 1,
+                                   .view_smoothness = 1,
+                                   .least_cosine = 0.1f};
     weft_components *components;
     assert_int_equal(weft_components_create(&shape, SIDE, SIDE, 1, &components, NULL), WEFT_OK);
     components->first[1] = SHOTS;

@@ -301,6 +301,12 @@ void stage_components(weft_components_kind kind, int component_count, weft_mater
                              .view_side = 9,
                              .light_smoothness = 1e-2f,
                              .view_smoothness = 1e-2f,
+                             .exponent = 2.4f,
+                             .incidence_power = 2,
+                             .cosine_power = -1,
+                             .least_incidence = 0.3f,
+                             .view_length = 0.8f,
+                             .view_nugget = 0.01f,
                              .least_cosine = 0.5f};
     expect_ok(weft_components_create(&shape, material->level[0].width, material->level[0].height, material->level_count,
                                      &material->components, &error),
@@ -311,8 +317,11 @@ void stage_components(weft_components_kind kind, int component_count, weft_mater
         for (int light = 0; light < COMPONENT_DIRECTIONS; light++)
             fill_image(material->components, view, light);
     }
-    for (int k = 0; k < component_count; k++)
+    for (int k = 0; k < component_count; k++) {
         material->components->scale[k] = 0.35f / 127;
+        material->components->length[k] = k < 4 ? 0.7f : 1.2f;
+        material->components->nugget[k] = 0.02f;
+    }
     srand(5);
     for (int k = 0; k < material->level_count; k++)
         fill_layers_level(&material->components->level[k], component_count);

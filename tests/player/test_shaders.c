@@ -241,6 +241,8 @@ static void components_equal_c(void **state)
     scene.light[0].direction = (weft_angles){weft_rad_of_deg(80), weft_rad_of_deg(100)};
     compare_components(state, "4 components under grazing light", WEFT_COMPONENTS_OF_HALF_VECTOR, 4, 0, scene);
     compare_components(state, "4 components, squared incidence", WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED, 4, 0, scene);
+    compare_components(state, "8 coded components, grazing", WEFT_COMPONENTS_KRIGED_OVER_HALF_VECTOR, 8, 0, scene);
+    compare_components(state, "8 coded components over the light", WEFT_COMPONENTS_KRIGED_OVER_LIGHT, 8, 0, scene);
 }
 
 static void components_equal_c_between_levels(void **state)

@@ -1,7 +1,7 @@
 // The compressed material: components. Coefficients are interpolated by the hardware between texels, the maps of the
 // factors between directions, and both are multiplied once a pixel and light. C twin: weft_components_sample_through.
 // Constants defined by player/draw/programs.c: COMPONENT_GROUPS, four components each; DRAWN_GROUPS, the first of them, which are
-// evaluated; INCIDENCE_POWER, of l . h in maps over half vectors, 0 of those over the light;
+// evaluated; OVER_HALF_VECTOR, whether maps are over it, else over the light; KRIGED, whether maps are: then values may be coded;
 // OPACITY, whether there is any below 1; RELIEF, whether it is all seen through heights (reflectance/relief/relief.glsl):
 // then from the stored views around, each at a place of its own.
 uniform sampler2DArray component_coefficient; // of a group in each layer, all levels side by side; -1 .. 1
@@ -15,6 +15,7 @@ uniform vec2 component_sides; // nodes along a side, of lights and of views
 uniform vec2 component_step, bounds_step; // 1 / size of the textures
 uniform vec4 component_area[16], bounds_area[16];
 uniform float least_cosine;
+uniform vec4 component_powers; // of l . h, of l_z, of coded values; the least l . h
 
 void add_coefficients(int level, vec2 coordinate, float weight, inout vec4 sum[DRAWN_GROUPS])
 {
@@ -40,15 +41,30 @@ vec4 bounds_at(int level, vec2 coordinate)
 // Where a light is in the maps, in nodes.
 vec2 inner_node(vec3 light, vec3 half_vector)
 {
-    vec2 place = INCIDENCE_POWER > 0 ? place_of_half_vector(half_vector) : place_of_direction(light);
+    vec2 place = OVER_HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light);
     return place * (component_sides.x - 1.0) + 0.5;
 }
 
-// Twin of weft_components_divisor.
+// Twin of weft_components_divisor, but of decoded values.
 float map_divisor(vec3 light, vec3 half_vector)
 {
-    float incidence = max(dot(light, half_vector), 0.0625);
-    return INCIDENCE_POWER == 0 ? 1.0 : INCIDENCE_POWER == 1 ? incidence : incidence * incidence;
+    float incidence = max(dot(light, half_vector), component_powers.w), cosine = max(light.z, 0.015625);
+    return OVER_HALF_VECTOR ? pow(incidence, component_powers.x) * pow(cosine, component_powers.y) : 1.0;
+}
+
+vec3 decoded(vec3 sum, float divisor)
+{
+    return (KRIGED ? pow(max(sum, vec3(0.0)), vec3(component_powers.z)) : sum) / divisor;
+}
+
+// Channels of kriged maps are scaled down alike, so that what is too bright keeps its hue.
+vec3 clamped(vec3 value, vec4 bounds, float light_z)
+{
+    value = max(value, bounds.rgb * light_z);
+    float most = bounds.a * min(1.0, light_z / least_cosine), brightest = max(value.r, max(value.g, value.b));
+    if (!KRIGED)
+        return min(value, vec3(most));
+    return brightest > most ? value * (most / brightest) : value;
 }
 
 vec2 map_place(vec2 inner, int group, int colour)
@@ -78,7 +94,7 @@ vec3 components_value(vec4 coefficient[DRAWN_GROUPS], vec3 light, vec3 view, ino
             sum[c] += dot(coefficient[i], factor);
         }
     }
-    return sum / map_divisor(light, half_vector);
+    return decoded(sum, map_divisor(light, half_vector));
 }
 
 // The same as stored view `number` has it.
@@ -90,7 +106,7 @@ vec3 components_value_of_view(vec4 coefficient[DRAWN_GROUPS], vec3 light, int nu
         for (int c = 0; c < 3; c++)
             sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), float(number)), 0.0));
     }
-    return sum / map_divisor(light, half_vector);
+    return decoded(sum, map_divisor(light, half_vector));
 }
 
 // Of `point` at a place: if `stored` as stored view `number` saw it from its direction `view`, else as seen from there.
@@ -111,11 +127,10 @@ vec4 radiance_at(SurfacePoint point, vec2 coordinate, bool stored, int number, v
         vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
         if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
             continue;
-        vec3 most = vec3(bounds.a * min(1.0, light.z / least_cosine));
         vec3 of_view = RELIEF ? components_value_of_view(coefficient, light, number, view) : vec3(0.0);
         vec3 between = components_value(coefficient, light, view, point.chance);
         vec3 value = stored ? of_view : between;
-        sum += irradiance / light.z * min(max(value, bounds.rgb * light.z), most);
+        sum += irradiance / light.z * clamped(value, bounds, light.z);
     }
     if (!OPACITY)
         return vec4(sum, 1.0);

@@ -43,6 +43,103 @@ static void components_are_read_back(void **state)
     weft_material_free(&again);
 }
 
+/* The example, as components by kriging. */
+static weft_components *make_kriged(weft_material *material)
+{
+    components_write_example(NAME);
+    assert_int_equal(weft_material_read(NAME, material, NULL), WEFT_OK);
+    weft_components *components = material->components;
+    components->kind = WEFT_COMPONENTS_KRIGED_OVER_HALF_VECTOR;
+    components->exponent = 2.4f;
+    components->incidence_power = 2;
+    components->cosine_power = -1;
+    components->least_incidence = 0.25f;
+    components->view_length = 0.6f;
+    components->view_nugget = 0.01f;
+    components->trend = 10;
+    for (int k = 0; k < components->component_count; k++) {
+        components->length[k] = 0.5f + 0.1f * (float)k;
+        components->nugget[k] = 1e-3f * (float)(k + 1);
+    }
+    return components;
+}
+
+static void kriged_components_are_read_back(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material, again;
+    const weft_components *a = make_kriged(&material);
+    expect_ok(weft_material_write("kriged.weft", &material, &error), &error);
+    expect_ok(weft_material_read("kriged.weft", &again, &error), &error);
+    const weft_components *b = again.components;
+    assert_int_equal(b->kind, a->kind);
+    assert_true(b->exponent == a->exponent && b->incidence_power == a->incidence_power);
+    assert_true(b->cosine_power == a->cosine_power && b->least_incidence == a->least_incidence);
+    assert_true(b->view_length == a->view_length && b->view_nugget == a->view_nugget && b->trend == a->trend);
+    assert_true(b->least_cosine == a->least_cosine);
+    assert_memory_equal(b->length, a->length, 8 * sizeof *a->length);
+    assert_memory_equal(b->nugget, a->nugget, 8 * sizeof *a->nugget);
+    assert_memory_equal(b->value, a->value, 7 * 8 * 3 * sizeof *a->value);
+    weft_material_free(&material);
+    weft_material_free(&again);
+}
+
+/* What makes no sense is named, whatever the number. */
+static void numbers_of_kriged_components_out_of_range_are_named(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 9; which++)
+        for (int wrong = 0; wrong < 2; wrong++) {
+            weft_material material;
+            weft_components *c = make_kriged(&material), *again = NULL;
+            float *number[] = {&c->exponent,        &c->incidence_power, &c->cosine_power,
+                               &c->least_incidence, &c->view_length,     &c->view_nugget,
+                               &c->trend,           &c->length[5],       &c->nugget[7]};
+            *number[which] = wrong ? NAN : -5;
+            size_t size = weft_components_section_size(c, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES);
+            uint8_t *bytes = malloc(size);
+            const char *fault = NULL;
+            weft_components_section_write(c, bytes);
+            assert_int_equal(weft_components_section_read(bytes, size, WEFT_VALUES_BY_WEIGHTED_DIFFERENCES, 5, 3, 4,
+                                                          &again, &fault, NULL),
+                             WEFT_BAD_INPUT);
+            assert_non_null(strstr(fault, "out of range"));
+            free(bytes);
+            weft_material_free(&material);
+        }
+}
+
+/* Version 1 has none. */
+static void kriged_components_of_version_1_are_refused(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_components *c = make_kriged(&material), *again = NULL;
+    size_t size = weft_components_section_size(c, WEFT_VALUES_BY_DIFFERENCES);
+    uint8_t *bytes = calloc(1, size + 9 * 8);
+    const char *fault = NULL;
+    weft_components_section_write(c, bytes);
+    assert_int_equal(
+        weft_components_section_read(bytes, size, WEFT_VALUES_BY_DIFFERENCES, 5, 3, 4, &again, &fault, NULL),
+        WEFT_BAD_INPUT);
+    assert_non_null(strstr(fault, "unknown kind"));
+    free(bytes);
+    weft_material_free(&material);
+}
+
+/* A power by vectors is a power. */
+static void powers_are_those_of_the_library(void **state)
+{
+    (void)state;
+    for (float base = 1e-9f; base < 1e4f; base *= 1.07f)
+        for (float exponent = 0.4f; exponent < 2.5f; exponent += 0.13f)
+            assert_float_equal((double)weft_power(base, exponent) / pow((double)base, (double)exponent), 1, 1e-5);
+    assert_true(weft_power(0, 2.4f) < 1e-12f && weft_power(-1, 0.5f) < 1e-12f);
+    assert_true(weft_decoded(1, -3) == -3);
+    assert_float_equal(weft_decoded(2, weft_coded(2, 0.37f)), 0.37f, 1e-5);
+}
+
 /* A floor never says more than what it is made of, and at most a sixteenth less. */
 static void floors_are_rounded_down(void **state)
 {
@@ -437,6 +534,10 @@ int test_material_components(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_are_read_back),
+        cmocka_unit_test(kriged_components_are_read_back),
+        cmocka_unit_test(numbers_of_kriged_components_out_of_range_are_named),
+        cmocka_unit_test(kriged_components_of_version_1_are_refused),
+        cmocka_unit_test(powers_are_those_of_the_library),
         cmocka_unit_test(floors_are_rounded_down),
         cmocka_unit_test(values_by_differences_are_read_back),
         cmocka_unit_test(differences_are_those_of_the_document),
