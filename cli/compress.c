@@ -87,9 +87,9 @@ static const weft_option option_table[] = {
      .help = "Fit N Lafortune lobes a texel and channel instead of components, with a view table where there are "
              "enough images",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, lobes), .low = 1, .high = WEFT_MATERIAL_MAX_LOBES},
-    {"weights", .argument = "even|screen", .usual = "even",
-     .help = "Weights of the samples. even: all alike (least squares). screen: bright samples count less, as on a "
-             "screen; around highlights that lobes cannot follow, colours stay right",
+    {"weights", .argument = "even|screen",
+     .help = "What an error counts for. screen: less in bright samples, as on a screen (default of components). even: "
+             "the same in all samples, as linear light (default of lobes)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, weights), .words = weight_words},
     {"error", .argument = "PERCENT",
      .help = "Use the fewest components whose relative RMSE on held-out directions is at most this",
@@ -377,7 +377,7 @@ static weft_code check_output(const char *path, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    compress_command command = {.hold_out = ENOUGH_SPLITS};
+    compress_command command = {.hold_out = ENOUGH_SPLITS, .weights = WEFT_WEIGHTS_BY_MODEL};
     weft_error error = {0};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     run_state state = {.command = &command, .progress = weft_command_progress(&command.common)};

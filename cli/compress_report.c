@@ -104,26 +104,53 @@ static void report_errors(const weft_common_options *common, const weft_material
     }
 }
 
-static void report_components(const weft_common_options *common, const weft_compress_options *options,
-                              const weft_components_report *components)
+static void report_plan(const weft_common_options *common, const weft_compress_options *options,
+                        const weft_components_report *components)
 {
-    static const char *const kind[] = {"the light", "the half vector", "the half vector, squared incidence"};
-    char square[64] = "";
-    if (components->scattered && components->left_out_count < 2)
+    const weft_component_plan *plan = &components->plan;
+    const weft_component_trial *trial = &components->trial;
+    char coding[48] = "linear values", chosen[160] = "too few images to choose by";
+    const weft_component_errors *linear = &trial->of_exponent[0], *own = linear;
+    for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++)
+        own = weft_component_exponent(i) == plan->exponent ? &trial->of_exponent[i] : own;
+    if (plan->exponent != 1)
+        snprintf(coding, sizeof coding, "values coded by a power of 1 / %g", (double)plan->exponent);
+    if (trial->image_count > 0)
+        snprintf(chosen, sizeof chosen,
+                 "chosen by held-out images: relative RMSE %.2f %%, as a screen shows it %.2f %% (linear values: %.2f "
+                 "%% and %.2f %%)",
+                 100 * own->linear, 100 * own->screen, 100 * linear->linear, 100 * linear->screen);
+    weft_command_say(common, "%d components of %s over %s, learned from %d texels; %s", options->component_count,
+                     coding, weft_components_are_over_half_vector(plan->kind) ? "the half vector" : "the light",
+                     components->training_texels, chosen);
+}
+
+static void report_scattered(const weft_common_options *common, const weft_compress_options *options,
+                             const weft_components_report *components)
+{
+    if (components->left_out_count < 2)
         weft_command_say(common, "one photograph says nothing about other directions; they are guessed");
-    else if (components->scattered)
+    else
         weft_command_say(common,
                          "scattered photographs: completed by kriging; relative RMSE %.2f %% when each of %d is "
                          "predicted from the others",
                          100 * components->left_out_error, components->left_out_count);
-    if (!components->scattered)
-        snprintf(square, sizeof square, ", %.2f %% with its squared incidence", 100 * components->trial_error[2]);
     weft_command_say(common,
-                     "%d components over %s, learned from %d texels; on images %s to choose: %.2f %% over the light, "
-                     "%.2f %% over the half vector%s (relative RMSE)",
-                     options->component_count, kind[components->kind], components->training_texels,
-                     components->scattered ? "fitted" : "held out", 100 * components->trial_error[0],
-                     100 * components->trial_error[1], square);
+                     "%d components over %s, learned from %d texels; on fitted images to choose: %.2f %% over the "
+                     "light, %.2f %% over the half vector (relative RMSE)",
+                     options->component_count,
+                     weft_components_are_over_half_vector(components->plan.kind) ? "the half vector" : "the light",
+                     components->training_texels, 100 * components->scattered_error[0],
+                     100 * components->scattered_error[1]);
+}
+
+static void report_components(const weft_common_options *common, const weft_compress_options *options,
+                              const weft_components_report *components)
+{
+    if (components->scattered)
+        report_scattered(common, options, components);
+    else
+        report_plan(common, options, components);
     weft_command_say(
         common,
         "components at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "

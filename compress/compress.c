@@ -116,10 +116,9 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              "layout %08" PRIx32 ", samples %08" PRIx32 ", %lld bytes of %lld.%09ld", fingerprint->layout,
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
-    snprintf(text->options, sizeof text->options,
-             "%s, %d lobes, %d components, maps %d, weights %d, levels %d, held out %08lx",
+    snprintf(text->options, sizeof text->options, "%s, %d lobes, %d components, weights %d, levels %d, held out %08lx",
              weft_compress_model_name(report->model), report->lobe_count, options->component_count,
-             (int)options->component_maps, (int)options->weights, options->levels, held_out);
+             (int)options->weights, options->levels, held_out);
     return WEFT_OK;
 }
 
@@ -218,10 +217,9 @@ static weft_code fit_components(fitting *work, weft_material *material, weft_com
     weft_components_report *own = &report->components;
     WEFT_TRY(open_checkpoint(work, error));
     const weft_components_options options = {.component_count = given->component_count,
-                                             .maps = given->component_maps,
                                              .finer = given->finer,
                                              .held_out = given->held_out,
-                                             .for_screen = given->weights == WEFT_WEIGHTS_SCREEN,
+                                             .for_screen = given->weights != WEFT_WEIGHTS_EVEN,
                                              .budget = work->budget,
                                              .checkpoint = work->checkpoint,
                                              .log = given->log};

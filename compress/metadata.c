@@ -51,25 +51,36 @@ static json_t *describe_kriging(const weft_components_report *report)
     return kriging;
 }
 
-/* By kind of maps. Scattered images do not try the last one. */
+static void append_errors(json_t **list, const weft_component_errors *errors)
+{
+    weft_json_append(list, json_pack("[f, f]", errors->linear, errors->screen));
+}
+
+/* Errors of linear light and on a screen of three forms and four exponents; those that were not tried are 0. Scattered
+ * images try two maps. */
 static json_t *list_trials(const weft_components_report *report)
 {
     json_t *trials = json_array();
-    int tried = report->scattered ? WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED : WEFT_COMPONENTS_KINDS;
-    for (int kind = 0; kind < tried; kind++)
-        weft_json_append(&trials, json_real(report->trial_error[kind]));
+    for (int map = 0; map < 2 && report->scattered; map++)
+        weft_json_append(&trials, json_real(report->scattered_error[map]));
+    for (int form = 0; form < WEFT_COMPONENT_FORMS && !report->scattered; form++)
+        append_errors(&trials, &report->trial.of_form[form]);
+    for (int exponent = 0; exponent < WEFT_COMPONENT_EXPONENTS && !report->scattered; exponent++)
+        append_errors(&trials, &report->trial.of_exponent[exponent]);
     return trials;
 }
 
 static json_t *describe_components(const weft_compress_options *options, const weft_components_report *report)
 {
-    static const char *const kind[] = {"light", "half vector", "half vector, squared incidence"};
+    const weft_component_plan *plan = &report->plan;
     const weft_error_summary *fitted = &report->fitted;
     json_t *components = json_pack(
-        "{s:i, s:s, s:o, s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->component_count, "maps_over",
-        kind[report->kind], "trial_relative_rmse", list_trials(report), "learned_from_texels", report->training_texels,
-        "fitted", "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative,
-        "rmse", fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
+        "{s:i, s:s, s:f, s:[f, f], s:o, s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->component_count,
+        "maps_over", weft_components_are_over_half_vector(plan->kind) ? "half vector" : "light", "exponent",
+        (double)plan->exponent, "powers", (double)plan->incidence_power, (double)plan->cosine_power,
+        "trial_relative_rmse", list_trials(report), "learned_from_texels", report->training_texels, "fitted",
+        "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative, "rmse",
+        fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
     if (report->scattered)
         weft_json_put(&components, "kriging", describe_kriging(report));
     return components;

@@ -1,4 +1,4 @@
-/* Which kind of maps a material has: decided by images that were held out. */
+/* How components are coded and carried between images: decided by images that were held out. */
 #include "compress/components/model.h"
 
 #include <math.h>
@@ -6,7 +6,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALIGNMENT = 64, EVERY = 10, LEAST_VIEWS = 20, LEAST_LIGHTS = 20, MOST_REFERENCES = 64 };
+enum {
+    ALIGNMENT = 64,
+    EVERY = 10,
+    EVERY_OF_FEW = 5, /* where a tenth would be a few images */
+    FEW_VIEWS = 4,
+    LEAST_VIEWS = 20,
+    LEAST_LIGHTS = 20,
+    MOST_REFERENCES = 64,
+    MOST_TEXELS = 128,
+    MOST_COMPONENTS = 16,
+    MOST_COMPARED = 600, /* images held out */
+    LINEAR = 0,          /* exponents by number: that of linear light, and ... */
+    USUAL = 2            /* ... the one that forms are tried with, and that few images have */
+};
+
+static const float exponent_of[WEFT_COMPONENT_EXPONENTS] = {1, 1.5f, 2, 2.4f};
+
+/* What the coding for a screen may leave of linear light, as a multiple of the least. */
+static const double most_of_linear = 1.05;
+
+/* Powers of l . h and l_z. */
+static const struct {
+    weft_components_kind kind;
+    float incidence_power, cosine_power;
+} form[WEFT_COMPONENT_FORMS] = {{WEFT_COMPONENTS_KRIGED_OVER_LIGHT, 0, 0},
+                                {WEFT_COMPONENTS_KRIGED_OVER_HALF_VECTOR, 1, 0},
+                                {WEFT_COMPONENTS_KRIGED_OVER_HALF_VECTOR, 2, -1}};
+
+/* What a screen shows of a value. */
+static const float screen_exponent = 2.4f;
 
 /* Between these there are measured directions on all sides: what is held out is interpolated, not extrapolated. Lights
  * this near to one that is held out are held out, too, so that jitter between views gives nothing away. */
@@ -18,12 +47,12 @@ static bool is_inside(weft_vec3 direction)
     return cosine < cos(least_theta_deg * WEFT_PI / 180) && cosine > cos(most_theta_deg * WEFT_PI / 180);
 }
 
-/* Every tenth of the directions that lie inside. */
-static int pick(const weft_vec3 *direction, int count, weft_vec3 *picked)
+/* Every `every` of the directions that lie inside. */
+static int pick(const weft_vec3 *direction, int count, int every, weft_vec3 *picked)
 {
     int inside = 0, found = 0;
     for (int i = 0; i < count && found < MOST_REFERENCES; i++) {
-        if (is_inside(direction[i]) && inside++ % EVERY == EVERY / 2)
+        if (is_inside(direction[i]) && inside++ % every == every / 2)
             picked[found++] = direction[i];
     }
     return found;
@@ -88,24 +117,25 @@ static weft_code split_create(const weft_component_images *images, split *s, wef
     int view_count = 0, light_count = 0, first_lights = (int)images->first[1];
     WEFT_TRY(split_allocate(images, s, error));
     if (images->view_count >= LEAST_VIEWS)
-        view_count = pick(images->view, images->view_count, views);
+        view_count = pick(images->view, images->view_count, EVERY, views);
     if (first_lights >= LEAST_LIGHTS)
-        light_count = pick(images->light, first_lights, lights);
+        light_count = pick(images->light, first_lights, images->view_count < FEW_VIEWS ? EVERY_OF_FEW : EVERY, lights);
     for (int view = 0; view < images->view_count; view++)
         add_view(images, view, is_near(images->view[view], views, view_count, 1e-3), lights, light_count, s);
     s->fitted.length = (3 * (size_t)s->fitted.image_count + 15) / 16 * 16;
     return WEFT_OK;
 }
 
-/* ---- One kind ---- */
+/* ---- One exponent and form ---- */
 
 typedef struct squares {
-    double error, sample;
+    double error, sample, screen_error, screen_sample;
 } squares;
 
 typedef struct trial {
     const weft_component_images *images;
-    const weft_training *whole, *part;
+    const weft_training *whole, *part; /* linear, and coded */
+    float exponent;
     const weft_factorisation *components;
     const split *split;
     float *factor;      /* [layer][fitted length] */
@@ -138,6 +168,17 @@ static weft_code find_coefficients(const trial *t, weft_error *error)
     return result;
 }
 
+static void add_squares(float value, float sample, double weight, squares *sum)
+{
+    double difference = (double)value - (double)sample;
+    double truth = (double)weft_coded(screen_exponent, sample);
+    double shown = (double)weft_coded(screen_exponent, value) - truth;
+    sum->error += weight * difference * difference;
+    sum->sample += weight * (double)sample * (double)sample;
+    sum->screen_error += weight * shown * shown;
+    sum->screen_sample += weight * truth * truth;
+}
+
 /* Sums over the texels for one image that was held out. */
 static squares squares_of(const trial *t, const weft_component_maps *maps, int held)
 {
@@ -145,7 +186,7 @@ static squares squares_of(const trial *t, const weft_component_maps *maps, int h
     float factor[3 * WEFT_COMPONENTS_MAX] = {0}, weight = t->images->weight[image];
     squares sum = {0};
     weft_component_factors(maps, t->images->light[image], t->split->held_view[held], factor);
-    for (int texel = 0; texel < t->whole->texel_count; texel++) {
+    for (int texel = 0; texel < t->part->texel_count; texel++) {
         const float *own = t->coefficient + (size_t)texel * (size_t)count;
         const float *sample = t->whole->vector + (size_t)texel * t->whole->length + 3 * (size_t)image;
         if (!t->whole->valid[(size_t)texel * t->whole->image_count + (size_t)image])
@@ -154,45 +195,72 @@ static squares squares_of(const trial *t, const weft_component_maps *maps, int h
             float value = 0;
             for (int k = 0; k < count; k++)
                 value += own[k] * factor[3 * k + c];
-            double difference = (double)(weight * fmaxf(value, 0) - sample[c]);
-            sum.error += difference * difference;
-            sum.sample += (double)sample[c] * (double)sample[c];
+            value = weft_decoded(t->exponent, value);
+            add_squares(value > 0 ? value : 0, sample[c] / weight, (double)(weight * weight), &sum);
         }
     }
     return sum;
 }
 
 /* Relative RMSE of the images that were held out. Images are added in their order, however many threads there are. */
-static double error_of_held(const trial *t, const weft_component_maps *maps)
+static weft_component_errors errors_of_held(const trial *t, const weft_component_maps *maps)
 {
     squares all = {0};
+    int count = t->split->held_count < MOST_COMPARED ? t->split->held_count : MOST_COMPARED;
 #pragma omp parallel for schedule(dynamic, 8)
-    for (int i = 0; i < t->split->held_count; i++)
-        t->sum[i] = squares_of(t, maps, i);
-    for (int i = 0; i < t->split->held_count; i++) {
+    for (int i = 0; i < count; i++)
+        t->sum[i] = squares_of(t, maps, (int)((long)i * t->split->held_count / count));
+    for (int i = 0; i < count; i++) {
         all.error += t->sum[i].error;
         all.sample += t->sum[i].sample;
+        all.screen_error += t->sum[i].screen_error;
+        all.screen_sample += t->sum[i].screen_sample;
     }
-    return all.sample > 0 ? sqrt(all.error / all.sample) : 0;
+    return all.sample > 0
+               ? (weft_component_errors){sqrt(all.error / all.sample), sqrt(all.screen_error / all.screen_sample)}
+               : (weft_component_errors){0};
 }
 
-static weft_code try_kind(const trial *t, weft_components_kind kind, double *error_of, weft_error *error)
+static float least_incidence(const weft_component_images *images)
+{
+    weft_real least = 1;
+    for (int view = 0; view < images->view_count; view++)
+        for (uint32_t i = images->first[view]; i < images->first[view + 1]; i++)
+            least = fmin(least, weft_dot(images->light[i], weft_half_vector(images->light[i], images->view[view])));
+    return (float)fmin(fmax(least, (weft_real)WEFT_LEAST_INCIDENCE), (weft_real)1);
+}
+
+static void set_form(const weft_component_images *images, float exponent, int number, weft_component_plan *plan)
+{
+    *plan = (weft_component_plan){.kind = form[number].kind,
+                                  .exponent = exponent,
+                                  .incidence_power = form[number].incidence_power,
+                                  .cosine_power = form[number].cosine_power,
+                                  .least_incidence = least_incidence(images)};
+}
+
+static weft_code try_form(const trial *t, int number, weft_component_errors *errors, weft_error *error)
 {
     weft_components *components = NULL;
     weft_component_maps maps = {0};
-    WEFT_TRY(weft_component_model_create(&t->split->fitted, t->components, kind, 1, 1, 1, &components, error));
+    weft_component_plan plan;
+    set_form(&t->split->fitted, t->exponent, number, &plan);
+    WEFT_TRY(weft_component_model_choose_lengths(&t->split->fitted, t->components, &plan, error));
+    WEFT_TRY(weft_component_model_create(&t->split->fitted, t->components, &plan, 1, 1, 1, &components, error));
     weft_code code = weft_component_maps_create(components, &maps, error);
     if (code == WEFT_OK) {
         weft_component_model_factors(&maps, &t->split->fitted, t->factor);
         code = find_coefficients(t, error);
     }
-    *error_of = code == WEFT_OK ? error_of_held(t, &maps) : 0;
+    if (code == WEFT_OK)
+        *errors = errors_of_held(t, &maps);
     weft_component_maps_free(&maps);
     weft_components_free(components);
     return code;
 }
 
-static weft_code try_all(trial *t, double error_of[WEFT_COMPONENTS_KINDS], weft_error *error)
+/* Forms first .. last - 1. */
+static weft_code try_forms(trial *t, int first, int last, weft_component_errors *errors, weft_error *error)
 {
     size_t factors = (size_t)t->components->count * t->part->length;
     t->factor = aligned_alloc(ALIGNMENT, factors * sizeof *t->factor);
@@ -201,36 +269,102 @@ static weft_code try_all(trial *t, double error_of[WEFT_COMPONENTS_KINDS], weft_
     weft_code code = t->factor && t->coefficient && t->sum
                          ? WEFT_OK
                          : weft_fail_memory(error, "factors of components", factors * sizeof *t->factor);
-    for (int kind = 0; kind < WEFT_COMPONENTS_KINDS && code == WEFT_OK; kind++)
-        code = try_kind(t, (weft_components_kind)kind, &error_of[kind], error);
+    for (int number = first; number < last && code == WEFT_OK; number++)
+        code = try_form(t, number, &errors[number - first], error);
     free(t->factor);
     free(t->coefficient);
     free(t->sum);
     return code;
 }
 
-weft_code weft_component_model_choose(const weft_component_images *images, const weft_training *training,
-                                      int component_count, weft_components_kind *kind,
-                                      double error_of[WEFT_COMPONENTS_KINDS], weft_error *error)
+/* ---- All of them ---- */
+
+/* `some` is linear. */
+static weft_code try_exponent(const weft_component_images *images, const weft_training *some, const split *s,
+                              int component_count, float exponent, int first, int last, weft_component_errors *errors,
+                              weft_error *error)
 {
-    split s;
     weft_training part = {0};
     weft_factorisation components = {0};
-    *kind = WEFT_COMPONENTS_OF_LIGHT;
-    memset(error_of, 0, WEFT_COMPONENTS_KINDS * sizeof *error_of);
-    weft_code code = split_create(images, &s, error);
-    if (code == WEFT_OK && s.held_count > 0 && s.fitted.image_count > 0) {
-        code = weft_training_subset(training, &s.fitted, s.fitted.image, &part, error);
-        if (code == WEFT_OK)
-            code = weft_factorisation_find(&part, component_count, &components, error);
-        trial t = {.images = images, .whole = training, .part = &part, .components = &components, .split = &s};
-        if (code == WEFT_OK)
-            code = try_all(&t, error_of, error);
-        for (int tried = 1; tried < WEFT_COMPONENTS_KINDS; tried++)
-            *kind = error_of[tried] < error_of[*kind] ? (weft_components_kind)tried : *kind;
+    weft_code code = weft_training_subset(some, &s->fitted, s->fitted.image, &part, error);
+    if (code == WEFT_OK) {
+        weft_training_code(&part, &s->fitted, exponent);
+        code = weft_factorisation_find(&part, component_count, &components, error);
     }
+    trial t = {
+        .images = images, .whole = some, .part = &part, .exponent = exponent, .components = &components, .split = s};
+    if (code == WEFT_OK)
+        code = try_forms(&t, first, last, errors, error);
     weft_factorisation_free(&components);
     weft_training_free(&part);
+    return code;
+}
+
+static int best_form(const weft_component_trial *tried, bool for_screen)
+{
+    int best = 0;
+    for (int number = 1; number < WEFT_COMPONENT_FORMS; number++) {
+        const weft_component_errors *own = &tried->of_form[number], *least = &tried->of_form[best];
+        if (own->linear > 0 && (for_screen ? own->screen < least->screen : own->linear < least->linear))
+            best = number;
+    }
+    return best;
+}
+
+static int best_exponent(const weft_component_trial *tried, bool for_screen)
+{
+    int best = for_screen ? USUAL : LINEAR;
+    double least = INFINITY, linear = INFINITY;
+    for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++)
+        if (tried->of_exponent[i].linear > 0)
+            linear = fmin(linear, tried->of_exponent[i].linear);
+    for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++) {
+        const weft_component_errors *own = &tried->of_exponent[i];
+        double measure = for_screen ? own->screen : own->linear;
+        if (own->linear > 0 && own->linear <= most_of_linear * linear && measure < least) {
+            least = measure;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Few views are carried over the light: they do not tell how a highlight moves with the view. */
+static weft_code try_all(const weft_component_images *images, const weft_training *some, const split *s,
+                         int component_count, bool for_screen, weft_component_trial *tried, weft_error *error)
+{
+    int count = component_count < MOST_COMPONENTS ? component_count : MOST_COMPONENTS;
+    int forms = images->view_count < FEW_VIEWS ? 1 : WEFT_COMPONENT_FORMS;
+    WEFT_TRY(try_exponent(images, some, s, count, exponent_of[USUAL], 0, forms, tried->of_form, error));
+    int chosen = best_form(tried, for_screen);
+    tried->image_count = s->held_count;
+    tried->of_exponent[USUAL] = tried->of_form[chosen];
+    for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++)
+        if (i != USUAL)
+            WEFT_TRY(try_exponent(images, some, s, count, exponent_of[i], chosen, chosen + 1, &tried->of_exponent[i],
+                                  error));
+    return WEFT_OK;
+}
+
+float weft_component_exponent(int number)
+{
+    return exponent_of[number];
+}
+
+weft_code weft_component_model_choose(const weft_component_images *images, const weft_training *training,
+                                      int component_count, bool for_screen, weft_component_plan *plan,
+                                      weft_component_trial *tried, weft_error *error)
+{
+    split s;
+    weft_training some = {0};
+    *tried = (weft_component_trial){0};
+    weft_code code = split_create(images, &s, error);
+    if (code == WEFT_OK)
+        code = weft_training_thin(training, MOST_TEXELS, &some, error);
+    if (code == WEFT_OK && s.held_count > 0 && s.fitted.image_count > 0)
+        code = try_all(images, &some, &s, component_count, for_screen, tried, error);
+    set_form(images, exponent_of[best_exponent(tried, for_screen)], best_form(tried, for_screen), plan);
+    weft_training_free(&some);
     split_free(&s);
     return code;
 }

@@ -82,7 +82,8 @@ static weft_code try_kind(comparison *c, const weft_component_images *places, we
     weft_components *components = NULL;
     weft_component_maps maps = {0};
     double square = 0, energy = 0;
-    WEFT_TRY(weft_component_model_create(places, c->components, kind, 1, 1, 1, &components, error));
+    const weft_component_plan plan = {.kind = kind};
+    WEFT_TRY(weft_component_model_create(places, c->components, &plan, 1, 1, 1, &components, error));
     weft_code code = weft_component_maps_create(components, &maps, error);
     c->maps = &maps;
     if (code == WEFT_OK)
@@ -97,7 +98,7 @@ static weft_code try_kind(comparison *c, const weft_component_images *places, we
 
 weft_code weft_component_model_choose_scattered(const weft_dataset_layout *layout, const weft_component_images *images,
                                                 const weft_training *training, const weft_component_images *places,
-                                                const weft_factorisation *components, weft_components_kind *kind,
+                                                const weft_factorisation *components, weft_component_plan *plan,
                                                 double error_of[2], weft_error *error)
 {
     weft_factorisation first = *components;
@@ -105,6 +106,7 @@ weft_code weft_component_model_choose_scattered(const weft_dataset_layout *layou
     comparison c = {.layout = layout, .images = images, .training = training, .components = &first};
     WEFT_TRY(try_kind(&c, places, WEFT_COMPONENTS_OF_LIGHT, &error_of[0], error));
     WEFT_TRY(try_kind(&c, places, WEFT_COMPONENTS_OF_HALF_VECTOR, &error_of[1], error));
-    *kind = error_of[1] < error_of[0] ? WEFT_COMPONENTS_OF_HALF_VECTOR : WEFT_COMPONENTS_OF_LIGHT;
+    *plan = (weft_component_plan){
+        .kind = error_of[1] < error_of[0] ? WEFT_COMPONENTS_OF_HALF_VECTOR : WEFT_COMPONENTS_OF_LIGHT, .exponent = 1};
     return WEFT_OK;
 }

@@ -11,7 +11,7 @@
 /* What rounding may add to the mean square of what the components leave. */
 static const double rounding_share = 0.01;
 
-enum { ALIGNMENT = 64, MOST_COMPARED = 2000000, LEAST_LIGHTS = 12, LEAST_VIEWS = 4 };
+enum { ALIGNMENT = 64, MOST_COMPARED = 2000000, LEAST_LIGHTS = 12 };
 
 /* What one fit hands from step to step. */
 typedef struct fitting {
@@ -45,10 +45,12 @@ static void free_all(fitting *work)
 static weft_code learn_from_grid(fitting *work, weft_components_report *report, weft_error *error)
 {
     int count = work->options->component_count;
-    WEFT_TRY(
-        weft_component_model_choose(&work->images, &work->training, count, &report->kind, report->trial_error, error));
+    WEFT_TRY(weft_component_model_choose(&work->images, &work->training, count, work->options->for_screen,
+                                         &report->plan, &report->trial, error));
     weft_progress_report(work->progress, "learning components", 1, 2);
-    return weft_factorisation_find(&work->training, count, &work->factorisation, error);
+    weft_training_code(&work->training, &work->images, report->plan.exponent);
+    WEFT_TRY(weft_factorisation_find(&work->training, count, &work->factorisation, error));
+    return weft_component_model_choose_lengths(&work->images, &work->factorisation, &report->plan, error);
 }
 
 static weft_code learn_from_scattered(fitting *work, weft_components_report *report, weft_error *error)
@@ -69,15 +71,7 @@ static weft_code learn_from_scattered(fitting *work, weft_components_report *rep
         weft_factorisation_find(&completion->training, work->options->component_count, &work->factorisation, error));
     work->factorisation.noise += completion->noise;
     return weft_component_model_choose_scattered(layout, &work->images, &work->training, &completion->images,
-                                                 &work->factorisation, &report->kind, report->trial_error, error);
-}
-
-/* Scattered images have not tried the square. */
-static weft_components_kind better_of_half_vectors(const double trial_error[WEFT_COMPONENTS_KINDS])
-{
-    double square = trial_error[WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED];
-    return square > 0 && square < trial_error[WEFT_COMPONENTS_OF_HALF_VECTOR] ? WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED
-                                                                              : WEFT_COMPONENTS_OF_HALF_VECTOR;
+                                                 &work->factorisation, &report->plan, report->scattered_error, error);
 }
 
 static weft_code learn(fitting *work, weft_material *material, weft_components_report *report, weft_error *error)
@@ -92,16 +86,10 @@ static weft_code learn(fitting *work, weft_material *material, weft_components_r
                                             (8 * work->images.length + 12 * (uint64_t)WEFT_TRAINING_TEXELS),
                                         weft_dataset_path(work->dataset), "its components", error));
     WEFT_TRY(weft_training_read(work->dataset, &work->images, &work->training, error));
-    if (work->options->for_screen)
-        weft_training_weigh_for_screen(&work->training, &work->images);
     WEFT_TRY(scattered ? learn_from_scattered(work, report, error) : learn_from_grid(work, report, error));
-    if (work->options->maps == WEFT_COMPONENT_MAPS_OF_LIGHT)
-        report->kind = WEFT_COMPONENTS_OF_LIGHT;
-    else if (work->options->maps == WEFT_COMPONENT_MAPS_OF_HALF_VECTOR)
-        report->kind = better_of_half_vectors(report->trial_error);
     report->training_texels = work->training.texel_count;
     WEFT_TRY(weft_component_model_create(scattered ? &work->completion.images : &work->images, &work->factorisation,
-                                         report->kind, layout->width, layout->height, material->level_count,
+                                         &report->plan, layout->width, layout->height, material->level_count,
                                          &work->components, error));
     weft_progress_report(work->progress, "learning components", 2, 2);
     return WEFT_OK;
@@ -129,22 +117,12 @@ static weft_code make_projector(fitting *work, weft_projector *projector, weft_e
     return weft_projector_create(&prior, work->factor, work->images.image_count, projector, error);
 }
 
-static double mean_square_weight(const weft_component_images *images)
-{
-    double sum = 0;
-    for (int i = 0; i < images->image_count; i++)
-        sum += (double)images->weight[i] * (double)images->weight[i];
-    return sum / images->image_count;
-}
-
 /* Values and coefficients of each layer are rounded to steps that change a sample alike: an error that spreads evenly
- * over a step has a twelfth of its square. The noise is that of weighted samples, and so rounding counts by the
- * weights, too. Steps are powers of the root of 2, so that the last digits of the noise decide none. */
-static double rounding_step(const weft_factorisation *factorisation, const weft_component_images *images,
-                            int component_count)
+ * over a step has a twelfth of its square. Steps are powers of the root of 2, so that the last digits of the noise
+ * decide none. */
+static double rounding_step(const weft_factorisation *factorisation, int component_count)
 {
-    double noise = factorisation->noise / mean_square_weight(images);
-    double square = 12 * rounding_share * noise / (2 * component_count);
+    double square = 12 * rounding_share * factorisation->noise / (2 * component_count);
     return square > 0 ? exp2(floor(log2(square)) / 2) : 0;
 }
 
@@ -166,11 +144,9 @@ static weft_code project(fitting *work, weft_components_report *report, weft_err
     if (code == WEFT_OK && work->options->finer)
         code = weft_component_model_double(&work->components, error);
     if (code == WEFT_OK)
-        weft_components_fill_levels(&work->projection, work->components);
+        code = weft_components_fill_levels(&work->projection, &work->images, work->factor, work->components, error);
     if (code == WEFT_OK && !work->options->finer)
-        report->rounding_step =
-            rounding_step(&work->factorisation, report->scattered ? &work->completion.images : &work->images,
-                          work->components->component_count);
+        report->rounding_step = rounding_step(&work->factorisation, work->components->component_count);
     if (report->rounding_step > 0)
         weft_components_round(report->rounding_step, work->components);
     return code;
@@ -189,9 +165,10 @@ static size_t compare(const fitting *work, const float *factor, weft_vec3 light,
         return 0;
     weft_rgb value = weft_components_texel(work->components, work->components->component_count, factor, 0,
                                            training->place[texel].x, training->place[texel].y, light.z);
-    pair[0] = (weft_compared){scale * sample[0], (float)value.r};
-    pair[1] = (weft_compared){scale * sample[1], (float)value.g};
-    pair[2] = (weft_compared){scale * sample[2], (float)value.b};
+    float exponent = work->components->exponent;
+    pair[0] = (weft_compared){weft_decoded(exponent, scale * sample[0]), (float)value.r};
+    pair[1] = (weft_compared){weft_decoded(exponent, scale * sample[1]), (float)value.g};
+    pair[2] = (weft_compared){weft_decoded(exponent, scale * sample[2]), (float)value.b};
     return 3;
 }
 
@@ -254,14 +231,16 @@ static weft_code fit(fitting *work, weft_material *material, weft_components_rep
 
 bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out)
 {
-    int images = 0, views = 0;
+    int images = 0, views = 0, most = 0;
     for (int view = 0; view < layout->view_count; view++) {
         int before = images;
         for (int image = 0; image < layout->image_count; image++)
             images += layout->view_of_image[image] == view && !(held_out && held_out[image]);
         views += images > before;
+        most = images - before > most ? images - before : most;
     }
-    return layout->distance == WEFT_NEAR || views < LEAST_VIEWS || images < LEAST_LIGHTS * views;
+    return layout->distance == WEFT_NEAR || images < LEAST_LIGHTS * views || views > WEFT_KRIGED_MAX_VIEWS ||
+           most > WEFT_KRIGED_MAX_LIGHTS;
 }
 
 weft_code weft_components_fit(weft_dataset *dataset, const weft_components_options *options,

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
+#include "compress/components/model.h"
 #include "compress/kriging/covariance.h"
 #include "compress/options/options.h"
 #include "compress/run/checkpoint.h"
@@ -14,11 +15,10 @@
 #include <stdbool.h>
 
 typedef struct weft_components_options {
-    int component_count; /* 4 .. 64, a multiple of 4; quantised where what they leave hides it, unless `finer` */
-    weft_component_maps_choice maps;
+    int component_count;     /* 4 .. 64, a multiple of 4; quantised where what they leave hides it, unless `finer` */
     bool finer;              /* as many components again (compress/options/options.h) */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
-    bool for_screen;         /* dim images count for more (compress/options/options.h) */
+    bool for_screen;         /* what a screen shows decides how values are coded; else linear light */
     /* These change nothing in the result: */
     weft_memory_budget budget;
     weft_checkpoint
@@ -27,11 +27,10 @@ typedef struct weft_components_options {
 } weft_components_options;
 
 typedef struct weft_components_report {
-    weft_components_kind kind;
-    double trial_error[WEFT_COMPONENTS_KINDS]; /* relative RMSE of each kind, by which it was chosen: on images held
-                                              out, 0 where none was; of scattered images, whose last kind is not tried,
-                                              on the images themselves */
+    weft_component_plan plan;
+    weft_component_trial trial; /* what decided it; of images that are not scattered */
     bool scattered;
+    double scattered_error[2];  /* relative RMSE of maps over light and half vector, on the images themselves */
     weft_covariance covariance; /* of scattered images, chosen by leaving out each of some images ... */
     int left_out_count;         /* ... how many these are in a texel ... */
     double left_out_error;      /* ... and their relative RMSE, each predicted by the others of them */
@@ -43,8 +42,9 @@ typedef struct weft_components_report {
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
 } weft_components_report;
 
-/* Whether the images of a dataset that are not held out are scattered: fewer than 12 for a view, fewer than 4 views, or
- * near. Their components are learned from what kriging says of some texels (compress/kriging/kriging.h). Pure. */
+/* Whether the images of a dataset that are not held out are scattered: fewer than 12 for a view, near, or more than
+ * kriged maps can hold (btf/material/components.h). Their components are learned from what kriging says of some texels
+ * (compress/kriging/kriging.h). Pure. */
 bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out);
 
 /* Adds components to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives

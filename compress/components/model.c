@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/components.md). */
+/* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/components.md). Smooth ones
+ * serve scattered images. */
 static const struct {
     int light_side, view_side;
     float light_smoothness, view_smoothness, view_variance_threshold;
@@ -12,7 +13,24 @@ static const struct {
     [WEFT_COMPONENTS_OF_LIGHT] = {16, 16, 1e-2f, 3e-3f, 10},
     [WEFT_COMPONENTS_OF_HALF_VECTOR] = {16, 10, 1e-3f, 3e-3f, 10},
     [WEFT_COMPONENTS_OF_HALF_VECTOR_SQUARED] = {16, 10, 1e-3f, 3e-3f, 10},
+    [WEFT_COMPONENTS_KRIGED_OVER_LIGHT] = {16, 16, 0, 0, 0},
+    [WEFT_COMPONENTS_KRIGED_OVER_HALF_VECTOR] = {16, 10, 0, 0, 0},
 };
+
+/* A single view has finer maps for its nodes, which are the same for all directions of view. */
+enum { SIDE_OF_ONE_VIEW = 32, LEAST_SIDE = 4 };
+
+weft_components weft_component_plan_powers(const weft_component_plan *plan)
+{
+    weft_components powers = {.kind = plan->kind,
+                              .exponent = plan->exponent,
+                              .incidence_power = plan->incidence_power,
+                              .cosine_power = plan->cosine_power,
+                              .least_incidence = plan->least_incidence};
+    if (!weft_components_are_kriged(plan->kind))
+        weft_components_set_implied(&powers);
+    return powers;
+}
 
 static void put_direction(weft_vec3 direction, float *xyz)
 {
@@ -63,22 +81,29 @@ static void fill_values(const weft_component_images *images, const weft_factoris
 }
 
 weft_code weft_component_model_create(const weft_component_images *images, const weft_factorisation *factorisation,
-                                      weft_components_kind kind, int width, int height, int level_count,
+                                      const weft_component_plan *plan, int width, int height, int level_count,
                                       weft_components **result, weft_error *error)
 {
-    weft_components shape = {.kind = kind,
-                             .component_count = factorisation->count,
-                             .view_count = images->view_count,
-                             .image_count = images->image_count,
-                             .light_side = usual[kind].light_side,
-                             .view_side = usual[kind].view_side,
-                             .light_smoothness = usual[kind].light_smoothness,
-                             .view_smoothness = usual[kind].view_smoothness,
-                             .view_variance_threshold = usual[kind].view_variance_threshold,
-                             .least_cosine = least_cosine(images)};
+    weft_components shape = weft_component_plan_powers(plan);
+    bool is_one_view = images->view_count == 1 && weft_components_are_kriged(plan->kind);
+    size_t count = (size_t)factorisation->count;
+    shape.component_count = factorisation->count;
+    shape.view_count = images->view_count;
+    shape.image_count = images->image_count;
+    shape.light_side = is_one_view ? SIDE_OF_ONE_VIEW : usual[plan->kind].light_side;
+    shape.view_side = is_one_view ? LEAST_SIDE : usual[plan->kind].view_side;
+    shape.light_smoothness = usual[plan->kind].light_smoothness;
+    shape.view_smoothness = usual[plan->kind].view_smoothness;
+    shape.view_variance_threshold = usual[plan->kind].view_variance_threshold;
+    shape.least_cosine = least_cosine(images);
+    shape.view_length = plan->view_length;
+    shape.view_nugget = plan->view_nugget;
+    shape.trend = plan->trend;
     WEFT_TRY(weft_components_create(&shape, width, height, level_count, result, error));
     fill_directions(images, *result);
     fill_values(images, factorisation, *result);
+    memcpy((*result)->length, plan->length, count * sizeof *plan->length);
+    memcpy((*result)->nugget, plan->nugget, count * sizeof *plan->nugget);
     return WEFT_OK;
 }
 
@@ -88,8 +113,11 @@ static void copy_twice(const weft_components *from, weft_components *to)
     memcpy(to->view, from->view, 3 * (size_t)from->view_count * sizeof *to->view);
     memcpy(to->light, from->light, 3 * (size_t)from->image_count * sizeof *to->light);
     memcpy(to->first, from->first, ((size_t)from->view_count + 1) * sizeof *to->first);
-    for (size_t half = 0; half < 2; half++)
+    for (size_t half = 0; half < 2; half++) {
         memcpy(to->scale + half * count, from->scale, count * sizeof *to->scale);
+        memcpy(to->length + half * count, from->length, count * sizeof *to->length);
+        memcpy(to->nugget + half * count, from->nugget, count * sizeof *to->nugget);
+    }
     for (size_t i = 0; i < 2 * (size_t)from->image_count; i++)
         memcpy(to->value + 3 * i * count, from->value + 3 * (i / 2) * count, 3 * count * sizeof *to->value);
 }

@@ -5,10 +5,21 @@
 #include "compress/components/factorisation.h"
 #include "reflectance/components/components.h"
 
+/* How components are coded, and carried between the images (btf/material/components.h). */
+typedef struct weft_component_plan {
+    weft_components_kind kind;
+    float exponent, incidence_power, cosine_power, least_incidence;
+    float view_length, view_nugget, trend;
+    float length[WEFT_COMPONENTS_MAX], nugget[WEFT_COMPONENTS_MAX];
+} weft_component_plan;
+
+/* Components of which only kind, exponent and powers are set, for weft_components_divisor. Pure. */
+weft_components weft_component_plan_powers(const weft_component_plan *plan);
+
 /* Components without coefficients, for a material of width x height texels: a coefficient of 1 stands for a whole
- * component. `texels` names the size and the number of levels. The caller frees. Errors: WEFT_SYSTEM. */
+ * component. The caller frees. Errors: WEFT_SYSTEM. */
 weft_code weft_component_model_create(const weft_component_images *images, const weft_factorisation *factorisation,
-                                      weft_components_kind kind, int width, int height, int level_count,
+                                      const weft_component_plan *plan, int width, int height, int level_count,
                                       weft_components **result, weft_error *error);
 
 /* Puts components without coefficients, which are freed, into the place of themselves twice over, one half behind the
@@ -23,19 +34,43 @@ void weft_component_model_factors(const weft_component_maps *maps, const weft_co
 void weft_component_model_factors_alone(const weft_component_maps *maps, const weft_component_images *images,
                                         float *factor);
 
-/* Which kind of maps predicts images better that it has not seen: a tenth of the views and of the lights are held out
- * of `training`, all kinds are fitted to the rest, and error_of receives the relative RMSE of each on what was held
- * out. All 0, and light, where there is too little to hold out. Errors: WEFT_SYSTEM. */
+/* The forms of maps that are tried: over the light, and over the half vector with two pairs of powers. */
+enum { WEFT_COMPONENT_FORMS = 3, WEFT_COMPONENT_EXPONENTS = 4 };
+
+/* Relative RMSE of images held out: of linear light, and of what a screen shows. */
+typedef struct weft_component_errors {
+    double linear, screen;
+} weft_component_errors;
+
+/* What decided a plan. */
+typedef struct weft_component_trial {
+    int image_count;                                             /* that were held out; 0: too few to hold any out */
+    weft_component_errors of_form[WEFT_COMPONENT_FORMS];         /* with an exponent of 2; 0: not tried */
+    weft_component_errors of_exponent[WEFT_COMPONENT_EXPONENTS]; /* of 1, 1.5, 2 and 2.4, with the best form */
+} weft_component_trial;
+
+/* The exponents that are tried: 1, 1.5, 2 and 2.4. Pure. */
+float weft_component_exponent(int number);
+
+/* Which plan predicts images best that it has not seen: a tenth of the views and of the lights are held out, and forms
+ * and exponents are fitted to the rest of some texels. `training` is linear and as it is read. For the screen that is
+ * the exponent of the least error there, among those that leave of linear light at most a twentieth more than the best;
+ * else the one of the least error of linear light. Lengths are not chosen yet. Errors: WEFT_SYSTEM. */
 weft_code weft_component_model_choose(const weft_component_images *images, const weft_training *training,
-                                      int component_count, weft_components_kind *kind,
-                                      double error_of[WEFT_COMPONENTS_KINDS], weft_error *error);
+                                      int component_count, bool for_screen, weft_component_plan *plan,
+                                      weft_component_trial *trial, weft_error *error);
+
+/* Lengths, nuggets and trend of a plan, by leaving values of the components out. Errors: WEFT_SYSTEM. */
+weft_code weft_component_model_choose_lengths(const weft_component_images *images,
+                                              const weft_factorisation *factorisation, weft_component_plan *plan,
+                                              weft_error *error);
 
 /* Which kind of maps says more of the images themselves, where the components belong to other directions `places`
  * (compress/components/completion.h): the first two kinds are fitted to the training texels. `layout` is that of the
  * dataset. Errors: WEFT_SYSTEM. */
 weft_code weft_component_model_choose_scattered(const weft_dataset_layout *layout, const weft_component_images *images,
                                                 const weft_training *training, const weft_component_images *places,
-                                                const weft_factorisation *factorisation, weft_components_kind *kind,
+                                                const weft_factorisation *factorisation, weft_component_plan *plan,
                                                 double error_of[2], weft_error *error);
 
 #endif

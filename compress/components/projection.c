@@ -110,6 +110,15 @@ static float brightest(const weft_component_images *images, const float *vector)
     return most;
 }
 
+/* In place. Weights are of roots of squares: w (v / w). */
+WEFT_HOT static void code_samples(float exponent, const float *weight, size_t count, float *vector)
+{
+    float inverse = 1 / exponent;
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < 3; c++)
+            vector[3 * i + c] = weight[i] * weft_power(vector[3 * i + c] / weight[i], inverse);
+}
+
 static void gather(const run *r, const weft_component_images *seen, worker *own, long first, int count)
 {
     const weft_block_samples *block = r->block;
@@ -124,6 +133,8 @@ static void gather(const run *r, const weft_component_images *seen, worker *own,
         size_t texel = ((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x;
         r->projection->brightest[texel] = brightest(r->images, vector);
         find_floor(seen, vector, own->valid + i * images, r->projection->floor + 3 * texel);
+        if (r->maps->components->exponent != 1)
+            code_samples(r->maps->components->exponent, r->images->weight, images, vector);
     }
 }
 

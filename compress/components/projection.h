@@ -29,7 +29,7 @@ typedef struct weft_projection_job {
 
 /* Reads the dataset once, block by block, the next one while the present one is worked on, and nothing else may use it
  * meanwhile. Texels of near images are projected by what the maps make of the components for each of them: `projector`
- * is NULL then, and elsewhere the maps may be. Errors: those of reading; WEFT_BAD_USAGE where the budget does not
+ * is NULL then. Errors: those of reading; WEFT_BAD_USAGE where the budget does not
  * suffice; those of weft_checkpoint_append; WEFT_BAD_INPUT for a checkpoint of other blocks; WEFT_SYSTEM. */
 weft_code weft_projection_make(weft_dataset *dataset, const weft_component_images *images,
                                const weft_projector *projector, const weft_factorisation *components,
@@ -39,12 +39,16 @@ void weft_projection_free(weft_projection *projection);
 
 /* ---- Coefficients as they are stored ---- */
 
-/* Fills the levels of `components` and takes the size of a step into components->scale. A texel of a level has the mean
- * coefficients of the texels of level 0 that it covers: where nothing is masked these are exactly the coefficients of
- * the mean samples. The ceiling of a square is WEFT_BRIGHTEST_MULTIPLE times the largest sample under it. The
- * floor of a square is the least of the floors of its texels, each the mean of those that it covers. Where `components`
- * are twice those of the projection, the second half, of the same values and scales as the first, takes what rounding
- * left of the coefficients, in steps 254 times as fine. `projection` is used up. */
-void weft_components_fill_levels(weft_projection *projection, weft_components *components);
+/* Fills the levels of `components` and takes the size of a step into components->scale. The texels of a level are the
+ * means of those of the level before, by what they cover of level 0. Linear components (exponent 1) have the mean
+ * coefficients: where nothing is masked these are exactly the coefficients of the mean samples. Coded ones are decoded
+ * at up to 512 of the images, averaged in linear light, coded again and projected on `factor` [component][length], what
+ * the maps make of the components there (compress/components/model.h); the root mean of squares is not the mean of
+ * roots. The ceiling of a square is WEFT_BRIGHTEST_MULTIPLE times the largest sample under it. The floor of a square is
+ * the least of the floors of its texels, each the mean of those that it covers. Where `components` are twice those of
+ * the projection, the second half, of the same values and scales as the first, takes what rounding left of the
+ * coefficients, in steps 254 times as fine. `projection` is used up. Errors: WEFT_SYSTEM. */
+weft_code weft_components_fill_levels(weft_projection *projection, const weft_component_images *images,
+                                      const float *factor, weft_components *components, weft_error *error);
 
 #endif

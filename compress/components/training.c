@@ -1,8 +1,7 @@
 #include "compress/components/training.h"
 
-#include "compress/fit/bundle.h"
+#include "btf/material/components.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -147,44 +146,33 @@ weft_code weft_training_read(weft_dataset *dataset, const weft_component_images 
     return code;
 }
 
-/* ---- Weights ---- */
+/* ---- Coded values ---- */
 
-/* The mean of an image over the texels that have it. */
-static double grey_of(const weft_training *t, const weft_component_images *images, size_t image, double *square,
-                      double *count)
+void weft_training_code(weft_training *training, const weft_component_images *images, float exponent)
 {
-    double sum = 0, own = 0;
-    for (size_t texel = 0; texel < (size_t)t->texel_count; texel++) {
-        const float *sample = t->vector + texel * t->length + 3 * image;
-        if (!t->valid[texel * t->image_count + image])
-            continue;
-        for (int c = 0; c < 3; c++) {
-            double value = (double)(sample[c] / images->weight[image]);
-            sum += value;
-            *square += value * value;
-        }
-        own += 3;
-    }
-    *count += own;
-    return own > 0 ? fmax(sum / own, 0) : 0;
-}
-
-void weft_training_weigh_for_screen(weft_training *t, weft_component_images *images)
-{
-    double square = 0, count = 1e-30;
-    for (size_t i = 0; i < t->image_count; i++)
-        grey_of(t, images, i, &square, &count);
-    double toe = WEFT_SCREEN_TOE * sqrt(square / count) + 1e-30;
-    for (size_t i = 0; i < t->image_count; i++) {
-        float factor = (float)sqrt(1 / (1 + grey_of(t, images, i, &square, &count) / toe));
-        images->weight[i] *= factor;
-        for (size_t texel = 0; texel < (size_t)t->texel_count; texel++)
-            for (size_t c = 0; c < 3; c++)
-                t->vector[texel * t->length + 3 * i + c] *= factor;
+#pragma omp parallel for schedule(static)
+    for (int texel = 0; texel < training->texel_count; texel++) {
+        float *vector = training->vector + (size_t)texel * training->length;
+        for (size_t i = 0; i < 3 * training->image_count; i++)
+            vector[i] = images->weight[i / 3] * weft_coded(exponent, vector[i] / images->weight[i / 3]);
     }
 }
 
-/* ---- Some of the images ---- */
+/* ---- Some of the texels, or of the images ---- */
+
+weft_code weft_training_thin(const weft_training *whole, int most, weft_training *subset, weft_error *error)
+{
+    int count = whole->texel_count < most ? whole->texel_count : most;
+    WEFT_TRY(weft_training_allocate(count, whole->length, whole->image_count, subset, error));
+    for (size_t i = 0; i < (size_t)count; i++) {
+        size_t from = i * (size_t)whole->texel_count / (size_t)count;
+        subset->place[i] = whole->place[from];
+        memcpy(subset->vector + i * whole->length, whole->vector + from * whole->length,
+               whole->length * sizeof *whole->vector);
+        memcpy(subset->valid + i * whole->image_count, whole->valid + from * whole->image_count, whole->image_count);
+    }
+    return WEFT_OK;
+}
 
 weft_code weft_training_subset(const weft_training *whole, const weft_component_images *images, const int *choice,
                                weft_training *subset, weft_error *error)

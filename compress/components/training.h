@@ -41,10 +41,11 @@ weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error)
 /* What is masked becomes 0 again. */
 void weft_training_clear_masked(weft_training *training);
 
-/* Weighs every image, in `images` and in the samples, by 1 / (1 + grey / (WEFT_SCREEN_TOE rms)): grey is the mean of
- * its samples and rms that of all. Where factors cannot follow a highlight, what is dim keeps its colour then, as with
- * weft_samples_weigh_for_screen. */
-void weft_training_weigh_for_screen(weft_training *training, weft_component_images *images);
+/* Samples become coded values: those that give them with an exponent (btf/material/components.h). */
+void weft_training_code(weft_training *training, const weft_component_images *images, float exponent);
+
+/* An even choice of at most `most` texels. The caller frees. Errors: WEFT_SYSTEM. */
+weft_code weft_training_thin(const weft_training *whole, int most, weft_training *subset, weft_error *error);
 
 /* What training texels say of some of their images alone: those at index choice [images->image_count] of `whole`. The
  * caller frees. Errors: WEFT_SYSTEM. */

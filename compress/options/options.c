@@ -4,8 +4,11 @@
 
 weft_compress_options weft_compress_default_options(void)
 {
-    return (weft_compress_options){
-        .component_count = WEFT_COMPONENTS_AUTOMATIC, .lobe_count = 2, .levels = true, .heights = true};
+    return (weft_compress_options){.component_count = WEFT_COMPONENTS_AUTOMATIC,
+                                   .lobe_count = 2,
+                                   .weights = WEFT_WEIGHTS_BY_MODEL,
+                                   .levels = true,
+                                   .heights = true};
 }
 
 int weft_compress_options_count_images(const weft_compress_options *options, const weft_dataset_layout *layout)

@@ -15,19 +15,13 @@ extern "C" {
 
 /* What an error of a sample counts for. */
 typedef enum weft_sample_weights {
-    WEFT_WEIGHTS_EVEN,  /* alike, as in least squares */
-    WEFT_WEIGHTS_SCREEN /* less the brighter the sample, about as little as a screen shows of it */
+    WEFT_WEIGHTS_EVEN,    /* alike, as in least squares of linear light */
+    WEFT_WEIGHTS_SCREEN,  /* less the brighter the sample, about as little as a screen shows of it */
+    WEFT_WEIGHTS_BY_MODEL /* components: as on a screen; lobes: all alike */
 } weft_sample_weights;
 
 /* As many components as the number of images suggests, or lobes where these are few (weft_compress_default_options). */
 enum { WEFT_COMPONENTS_AUTOMATIC = -1 };
-
-/* What the maps of components are over. */
-typedef enum weft_component_maps_choice {
-    WEFT_COMPONENT_MAPS_CHOSEN, /* what predicts images better that are held out to choose */
-    WEFT_COMPONENT_MAPS_OF_LIGHT,
-    WEFT_COMPONENT_MAPS_OF_HALF_VECTOR
-} weft_component_maps_choice;
 
 typedef struct weft_compress_options {
     int component_count; /* 4..64, a multiple of 4; 0: lobes; WEFT_COMPONENTS_AUTOMATIC */
@@ -36,7 +30,6 @@ typedef struct weft_compress_options {
     weft_sample_weights weights; /* not of the sparse model */
     bool levels;                 /* mip levels, each fitted to the mean samples of its groups of texels */
     bool heights;                /* components are seen through those of the dataset, where it has some */
-    weft_component_maps_choice component_maps;
     bool finer; /* as many components again, which hold what rounding to 8 bits leaves of the coefficients of the first,
                    which have 15 bits then: it tells what rounding costs. At most 32 components */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
@@ -52,9 +45,9 @@ WEFT_API weft_compress_options weft_compress_default_options(void);
 
 /* Fits a material to a dataset: every texel of every mip level.
  *
- *   components  f(l, v) l_z = sum_k c_k B_k(l, v): the dataset, a matrix of texels by images, is factorised; its
- *               coefficients c_k are 8-bit, and the tables B_k are interpolated to other directions by kriging
- *               (docs/reference/compression.md).
+ *   components  f(l, v) l_z = max(0, sum_k c_k B_k(l, v))^p: the dataset, a matrix of texels by images, is
+ *               factorised; its coefficients c_k are 8-bit, and the tables B_k are interpolated to other directions by
+ *               kriging (docs/reference/compression.md).
  *   lobes       each texel by itself: f(l, v) = T(v) (rho + sum_i lobe_i), by non-linear least squares (Lafortune et
  * al. 1997; Daubert et al. 2001).
  *
