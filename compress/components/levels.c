@@ -146,7 +146,7 @@ static weft_code decoder_create(const weft_component_images *images, const float
 {
     size_t taken = (size_t)(images->image_count < MOST_IMAGES ? images->image_count : MOST_IMAGES);
     *d = (decoder){.exponent = exponent, .count = (size_t)count, .length = 3 * taken};
-    d->factor = malloc(d->count * d->length * sizeof *d->factor);
+    d->factor = calloc(d->count * d->length, sizeof *d->factor);
     d->root = malloc(d->count * d->count * sizeof *d->root);
     if (!d->factor || !d->root) {
         decoder_free(d);
