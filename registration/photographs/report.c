@@ -43,29 +43,32 @@ static weft_vec3 view_of(const weft_photographs_photograph *p)
     return weft_pose_camera_position(&p->pose);
 }
 
-static double median_lamp_error(const weft_photograph_set *set)
+static weft_code median_lamp_error(const weft_photograph_set *set, double *median, weft_error *error)
 {
-    double *value = malloc(((size_t)set->count + 1) * sizeof *value), median = 0;
-    size_t count = 0;
-    for (int i = 0; value && i < set->count; i++) {
+    size_t count = 0, bytes = ((size_t)set->count + 1) * sizeof(double);
+    double *value = malloc(bytes);
+    if (!value)
+        return weft_fail_memory(error, "errors of lamps", bytes);
+    for (int i = 0; i < set->count; i++) {
         if (weft_photographs_used(&set->photograph[i]))
             value[count++] = set->photograph[i].lamp.uncertainty_deg;
     }
-    if (value)
-        median = weft_quantile(value, count, 0.5);
+    *median = weft_quantile(value, count, 0.5);
     free(value);
-    return median;
+    return WEFT_OK;
 }
 
-static void write_tiles(weft_page *page, const weft_photograph_set *set)
+static weft_code write_tiles(weft_page *page, const weft_photograph_set *set, weft_error *error)
 {
+    double lamp_error;
+    WEFT_TRY(median_lamp_error(set, &lamp_error, error));
     fputs("<div class=\"tiles\">\n", page->html);
     weft_page_tile(page, "photographs in the dataset", "%d of %d", set->used_count, set->count);
     weft_page_tile(page, "pixels: corners of markers about the lens, RMS", "%.2f", set->lens.rms_px);
-    weft_page_tile(page, "direction of the lamp, standard error, median", "%.2f\xc2\xb0", median_lamp_error(set));
+    weft_page_tile(page, "direction of the lamp, standard error, median", "%.2f\xc2\xb0", lamp_error);
     weft_page_tile(page, "distinct views", "%d", set->lens.distinct_views);
-    weft_page_tile(page, "time taken", "%.0f s", set->seconds);
     fputs("</div>\n", page->html);
+    return WEFT_OK;
 }
 
 static const char *knowledge_name(weft_lens_knowledge knowledge)
@@ -260,7 +263,7 @@ static weft_code write_page(weft_page *page, const char *dataset, const weft_pho
     weft_page_text(page, dataset);
     fprintf(page->html, ", %d \u00d7 %d texels of %.3f mm</p>\n", settings->width, settings->height,
             settings->target.opening_mm / settings->width);
-    write_tiles(page, set);
+    WEFT_TRY(write_tiles(page, set, error));
     write_left_out(page, set);
     fputs("<h2>Where camera and lamp stood</h2>\n<p class=\"note\">Directions as seen from above the sample, by their "
           "angle "
