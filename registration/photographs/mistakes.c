@@ -184,6 +184,20 @@ static double shift_between(const double *a, const double *b, int width, int hei
     return best > least_correlation && best > still + least_gain ? shift : 0;
 }
 
+/* Whether a pattern resembles itself elsewhere, as that of a woven cloth: then a shift says nothing. */
+static bool repeats(const double *pattern, int width, int height)
+{
+    const double most_correlation = 0.4, least_shift = 5;
+    const int reach = width / 8;
+    for (int dy = 0; dy <= reach; dy++) {
+        for (int dx = -reach; dx <= reach; dx++) {
+            if (hypot(dx, dy) >= least_shift && correlation(pattern, pattern, width, height, dx, dy) > most_correlation)
+                return true;
+        }
+    }
+    return false;
+}
+
 /* The photograph from most nearly above. */
 static const weft_photographs_photograph *find_reference(const weft_photograph_set *set)
 {
@@ -208,6 +222,11 @@ weft_code weft_photographs_check_still(const char *folder, const weft_photograph
     double *shift = calloc((size_t)set->count + 1, sizeof *shift);
     double *still = reference ? pattern_of(&reference->rectified) : NULL, mm = 0;
     int used = 0, moved = 0, first = -1;
+    if (still && repeats(still, reference->rectified.width, reference->rectified.height)) {
+        free(shift);
+        free(still);
+        return WEFT_OK;
+    }
 #pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < set->count; i++) {
         const weft_photographs_photograph *p = &set->photograph[i];
