@@ -31,7 +31,7 @@ static void fill_covariances(const weft_vec3 *direction, float length, float tre
         for (size_t j = i; j < count; j++) {
             double x = sqrt(3) * (double)weft_length(weft_subtract(direction[i], direction[j])) / (double)length;
             double c = (1 + x) * exp(-x) + (double)trend * (1 + (double)weft_dot(direction[i], direction[j]));
-            grid->covariance[i * count + j] = grid->covariance[j * count + i] = (float)c;
+            grid->covariance[i * count + j] = grid->covariance[j * count + i] = c;
         }
 }
 
@@ -63,10 +63,10 @@ void weft_kriged_grid_free(weft_kriged_grid *grid)
 /* Of a node with what lies in a cell. */
 static double node_covariance(const weft_kriged_grid *grid, int node, const weft_square_cell *cell)
 {
-    const float *row = grid->covariance + (size_t)node * (size_t)grid->node_count;
+    const double *row = grid->covariance + (size_t)node * (size_t)grid->node_count;
     double sum = 0;
     for (int k = 0; k < 4; k++)
-        sum += (double)cell->weight[k] * (double)row[cell->index[k]];
+        sum += (double)cell->weight[k] * row[cell->index[k]];
     return sum;
 }
 
@@ -216,7 +216,7 @@ weft_code weft_kriged_map_variances(const weft_kriged_map *map, float *variance,
     LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'L', 'N', 'N', map->places.count, grid->node_count, map->root,
                         map->places.count, column, map->places.count);
     for (size_t i = 0; i < nodes; i++) {
-        double left = (double)grid->covariance[i * nodes + i];
+        double left = grid->covariance[i * nodes + i];
         for (size_t j = 0; j < count; j++)
             left -= column[i * count + j] * column[i * count + j];
         variance[i] = (float)fmax(left, 0);

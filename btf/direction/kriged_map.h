@@ -17,7 +17,7 @@
 /* The covariances of the nodes with each other. Immutable; freed with weft_kriged_grid_free. */
 typedef struct weft_kriged_grid {
     int side, node_count;
-    float *covariance; /* [node][node] */
+    double *covariance; /* [node][node] */
 } weft_kriged_grid;
 
 /* Of the square of directions, or of half vectors. Errors: WEFT_SYSTEM. */

@@ -107,8 +107,9 @@ typedef struct weft_components {
 /* The powers that the kinds of earlier versions imply: linear values, l . h by the kind, at least 1/16. */
 void weft_components_set_implied(weft_components *components);
 
-/* base^exponent for base >= 2^-100, to 1e-5 of it, and less than 1e-12 below; here, and without branches, so that loops
- * over all samples become vectors. Pure. */
+/* base^exponent to 1e-5 of it, for a base of at least 2^-100 and a result of 2^-126 to 2^126; below and above it is
+ * about that of these, and of NaN that of 2^-100. Here, and without branches, so that loops over all samples become
+ * vectors. Pure. */
 static inline float weft_power(float base, float exponent)
 {
     const float least = 0x1p-100f, one_over_ln_2 = 1.44269504f, ln_2 = 0.69314718f;
@@ -122,9 +123,10 @@ static inline float weft_power(float base, float exponent)
     float t = (mantissa - 1) / (mantissa + 1), u = t * t;
     float series = 2 * t * (1 + u * (1.0f / 3 + u * (1.0f / 5 + u * (1.0f / 7 + u / 9))));
     float power = exponent * ((float)shift + one_over_ln_2 * series);
+    power = power > -126 ? power < 126 ? power : 126 : -126;
     float whole = (float)(int32_t)(power + (power > 0 ? 0.5f : -0.5f)), rest = ln_2 * (power - whole);
     float part = 1 + rest * (1 + rest * (1.0f / 2 + rest * (1.0f / 6 + rest * (1.0f / 24 + rest / 120))));
-    int32_t scale = ((int32_t)(whole > -126 ? whole : -126) + 127) * (1 << 23);
+    int32_t scale = ((int32_t)whole + 127) * (1 << 23);
     float result;
     memcpy(&result, &scale, sizeof result);
     return result * part;

@@ -135,6 +135,9 @@ static void powers_are_those_of_the_library(void **state)
     for (float base = 1e-9f; base < 1e4f; base *= 1.07f)
         for (float exponent = 0.4f; exponent < 2.5f; exponent += 0.13f)
             assert_float_equal((double)weft_power(base, exponent) / pow((double)base, (double)exponent), 1, 1e-5);
+    const float most = weft_power(INFINITY, 4);
+    assert_true(most > 1e37f && isfinite(most) && weft_power(1e30f, 2.4f) == most);
+    assert_true(weft_power(NAN, 2) < 1e-12f && weft_power(1e-38f, 4) >= 0);
     assert_true(weft_power(0, 2.4f) < 1e-12f && weft_power(-1, 0.5f) < 1e-12f);
     assert_true(weft_decoded(1, -3) == -3);
     assert_float_equal(weft_decoded(2, weft_coded(2, 0.37f)), 0.37f, 1e-5);
