@@ -11,7 +11,7 @@
 /* What rounding may add to the mean square of what the components leave. */
 static const double rounding_share = 0.01;
 
-enum { ALIGNMENT = 64, MOST_COMPARED = 2000000, LEAST_LIGHTS = 12 };
+enum { ALIGNMENT = 64, MOST_COMPARED = 2000000, LEAST_LIGHTS = 12, LEAST_VIEWS = 4 };
 
 /* What one fit hands from step to step. */
 typedef struct fitting {
@@ -77,7 +77,7 @@ static weft_code learn_from_scattered(fitting *work, weft_components_report *rep
 static weft_code learn(fitting *work, weft_material *material, weft_components_report *report, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    bool scattered = weft_images_are_scattered(layout, work->options->held_out);
+    bool scattered = weft_images_are_scattered(layout);
     weft_progress_report(work->progress, "learning components", 0, 2);
     WEFT_TRY(weft_component_images_create(layout, work->options->held_out, &work->images, error));
     /* Samples of the texels that are learned from, those again that are not held out, and their products. */
@@ -229,18 +229,18 @@ static weft_code fit(fitting *work, weft_material *material, weft_components_rep
     return measure(work, report, error);
 }
 
-bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out)
+bool weft_images_are_scattered(const weft_dataset_layout *layout)
 {
     int images = 0, views = 0, most = 0;
     for (int view = 0; view < layout->view_count; view++) {
         int before = images;
         for (int image = 0; image < layout->image_count; image++)
-            images += layout->view_of_image[image] == view && !(held_out && held_out[image]);
+            images += layout->view_of_image[image] == view;
         views += images > before;
         most = images - before > most ? images - before : most;
     }
-    return layout->distance == WEFT_NEAR || images < LEAST_LIGHTS * views || views > WEFT_KRIGED_MAX_VIEWS ||
-           most > WEFT_KRIGED_MAX_LIGHTS;
+    return layout->distance == WEFT_NEAR || (views > 1 && views < LEAST_VIEWS) || images < LEAST_LIGHTS * views ||
+           views > WEFT_KRIGED_MAX_VIEWS || most > WEFT_KRIGED_MAX_LIGHTS;
 }
 
 weft_code weft_components_fit(weft_dataset *dataset, const weft_components_options *options,

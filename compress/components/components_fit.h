@@ -42,10 +42,11 @@ typedef struct weft_components_report {
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
 } weft_components_report;
 
-/* Whether the images of a dataset that are not held out are scattered: fewer than 12 for a view, near, or more than
- * kriged maps can hold (btf/material/components.h). Their components are learned from what kriging says of some texels
- * (compress/kriging/kriging.h). Pure. */
-bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out);
+/* Whether the images of a dataset are scattered: fewer than 12 for a view, two or three views, near, or more than
+ * kriged maps can hold (btf/material/components.h). Images that are held out count, so that the fit that tells the
+ * error is of the same kind as the one that it is told of. The components of scattered images are learned from what
+ * kriging says of some texels (compress/kriging/kriging.h). Pure. */
+bool weft_images_are_scattered(const weft_dataset_layout *layout);
 
 /* Adds components to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives
  * the same components, for any number of threads and any memory. What a checkpoint keeps is the coefficients of all

@@ -37,8 +37,10 @@ typedef struct measuring {
     weft_measured_texels texels;
     int way_count; /* in which components are seen */
     weft_splits splits;
-    weft_compress_model whole_model; /* that all images carry, and its lobes */
+    /* What all images carry: the model, its lobes, and whether they are scattered. */
+    weft_compress_model whole_model;
     int whole_lobes;
+    bool whole_scattered;
     answers said[WAYS];
     weft_means_taken photographs_taken;
     int measured_count;          /* of the splits: the first ones */
@@ -218,7 +220,9 @@ static weft_code ask_split(measuring *work, int split, split_answers *said, weft
     weft_material material;
     weft_compress_report report;
     WEFT_TRY(fit_without(work, held, &material, &report, error));
-    work->result->smaller_model |= report.model != work->whole_model || report.lobe_count != work->whole_lobes;
+    work->result->smaller_model |=
+        report.model != work->whole_model || report.lobe_count != work->whole_lobes ||
+        (report.model == WEFT_COMPRESS_COMPONENTS && report.components.scattered != work->whole_scattered);
     weft_trial trial;
     weft_code code = weft_trial_create(&work->texels.subset, held, next, &trial, error);
     if (work->texels.asked.width > 0)
@@ -336,6 +340,7 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
                                 weft_error *error)
 {
     work->whole_model = weft_compress_plan(weft_dataset_get_layout(dataset), &work->options, &work->whole_lobes);
+    work->whole_scattered = weft_images_are_scattered(weft_dataset_get_layout(dataset));
     if (weft_measures_spread_texels(dataset, &work->options, &work->splits))
         WEFT_TRY(measure_spread_texels(dataset, work, progress, error));
     else

@@ -215,6 +215,8 @@ static void what_the_images_do_not_suffice_for_is_named(void **state)
     assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --lobes 2 --weights screen --hold-out off", said),
                      0);
     assert_null(strstr(said, "changes nothing"));
+    write_few_images(1, 12);
+    expect_weft("compress few.btf.h5 -o few.weft", 0, "too few were left for the whole model");
     write_few_images(1, 11);
     expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --weights screen", 0, "--weights changes nothing");
     assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --hold-out off", said), 0);

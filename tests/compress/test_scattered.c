@@ -415,6 +415,31 @@ static void bad_sets_keep_to_the_limits(void **state)
     hold_to_limits("two images", fill_truth, SCATTERED, 2, 2);
 }
 
+/* Of `views` views with `lights` lights each. */
+static bool is_scattered(int views, int lights, weft_distance distance)
+{
+    enum { MOST = 600 };
+    int view_of_image[MOST];
+    for (int i = 0; i < views * lights; i++)
+        view_of_image[i] = i / lights;
+    const weft_dataset_layout layout = {
+        .view_count = views, .image_count = views * lights, .view_of_image = view_of_image, .distance = distance};
+    return weft_images_are_scattered(&layout);
+}
+
+/* Two or three views do not tell what lies between them: kriging over pairs of directions knows more of it. */
+static void what_is_no_grid_is_scattered(void **state)
+{
+    (void)state;
+    assert_false(is_scattered(1, 12, WEFT_FAR));
+    assert_false(is_scattered(4, 12, WEFT_FAR));
+    assert_true(is_scattered(1, 11, WEFT_FAR));
+    assert_true(is_scattered(2, 16, WEFT_FAR));
+    assert_true(is_scattered(3, 16, WEFT_FAR));
+    assert_true(is_scattered(1, 600, WEFT_FAR));
+    assert_true(is_scattered(4, 12, WEFT_NEAR));
+}
+
 int test_scattered(void)
 {
     const struct CMUnitTest tests[] = {
@@ -427,6 +452,7 @@ int test_scattered(void)
         cmocka_unit_test(what_was_not_tried_is_not_told),
         cmocka_unit_test(one_view_speaks_of_its_lights),
         cmocka_unit_test(bad_sets_keep_to_the_limits),
+        cmocka_unit_test(what_is_no_grid_is_scattered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
