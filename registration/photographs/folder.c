@@ -33,20 +33,38 @@ static void take_colours(const weft_colour_claim *claim, weft_photographs_photog
         memcpy(photograph->file_colour.matrix[i], claim->space.matrix[i], sizeof claim->space.matrix[i]);
 }
 
-static void read_exif(const char *folder, weft_photographs_photograph *photograph)
+/* A file that cannot be read is left out; a lack of memory is not the file's fault and ends the command. */
+static weft_code read_exif(const char *folder, weft_photographs_photograph *photograph, weft_error *error)
 {
-    weft_error error = {0};
     char *path;
-    if (asprintf(&path, "%s/%s", folder, photograph->name) < 0) {
-        snprintf(photograph->remark, sizeof photograph->remark, "memory is short");
-        return;
-    }
+    if (asprintf(&path, "%s/%s", folder, photograph->name) < 0)
+        return weft_fail_memory(error, "path", strlen(folder) + strlen(photograph->name) + 2);
     weft_colour_claim claim;
-    if (weft_colour_claim_read(path, NULL, NULL, &photograph->exif, &claim, &error) != WEFT_OK)
-        snprintf(photograph->remark, sizeof photograph->remark, "%.180s", error.message);
-    else
-        take_colours(&claim, photograph);
+    weft_code code = weft_colour_claim_read(path, NULL, NULL, &photograph->exif, &claim, error);
     free(path);
+    if (code == WEFT_OK)
+        take_colours(&claim, photograph);
+    else if (weft_class_of(code) == WEFT_BAD_INPUT)
+        snprintf(photograph->remark, sizeof photograph->remark, "%.180s", error->message);
+    else
+        return code;
+    return WEFT_OK;
+}
+
+static weft_code read_all_exif(const char *folder, weft_photograph_set *set, weft_error *error)
+{
+    weft_code first = WEFT_OK;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < set->count; i++) {
+        weft_error own = {0};
+        weft_code code = read_exif(folder, &set->photograph[i], &own);
+#pragma omp critical(read_all_exif)
+        if (code != WEFT_OK && first == WEFT_OK) {
+            first = code;
+            *error = own;
+        }
+    }
+    return first;
 }
 
 const weft_exif *weft_photographs_common_size(const weft_photograph_set *set)
@@ -131,9 +149,7 @@ weft_code weft_photographs_list(const char *folder, weft_photograph_set *set, we
     weft_code code = name_photographs(folder, &names, set, error);
     weft_lines_free(&names);
     WEFT_TRY(code);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < set->count; i++)
-        read_exif(folder, &set->photograph[i]);
+    WEFT_TRY(read_all_exif(folder, set, error));
     const weft_exif *common = weft_photographs_common_size(set);
     if (!common)
         return weft_fail(error, WEFT_BAD_INPUT,
