@@ -39,9 +39,9 @@ static weft_vec3 in_camera(const weft_pose *pose, weft_vec3 p)
                        r[2][0] * p.x + r[2][1] * p.y + r[2][2] * p.z + pose->translation.z};
 }
 
-static disc outline_of(const weft_camera *camera, const weft_pose *pose, const double place[2], double diameter_mm)
+static disc outline_of(const weft_camera *camera, const weft_pose *pose, weft_vec3 centre, double diameter_mm)
 {
-    weft_vec3 c = in_camera(pose, weft_vec3_of(place[0], place[1], diameter_mm / 2));
+    weft_vec3 c = in_camera(pose, centre);
     if (!(c.z > diameter_mm))
         return (disc){0, 0, 0};
     weft_pixel ideal = {camera->cx + camera->fx * c.x / c.z, camera->cy + camera->fy * c.y / c.z};
@@ -157,18 +157,17 @@ static void weigh(const weft_light_values *values, const sight *ball, const int 
 }
 
 weft_highlight weft_ball_highlight(const weft_camera *camera, const weft_pose *pose, const weft_light_values *values,
-                                   const double place[2], double diameter_mm)
+                                   weft_vec3 place, double diameter_mm)
 {
     const double fewest_px = 8;
     weft_highlight none = {0};
-    disc d = outline_of(camera, pose, place, diameter_mm);
+    weft_vec3 centre = weft_add(place, weft_vec3_of(0, 0, diameter_mm / 2));
+    disc d = outline_of(camera, pose, centre, diameter_mm);
     if (!(d.radius >= fewest_px) || !(d.x - d.radius >= 1) || !(d.y - d.radius >= 1) ||
         !(d.x + d.radius <= values->width - 2) || !(d.y + d.radius <= values->height - 2))
         return none;
     d.radius *= inner_share;
-    const sight ball = {
-        camera,          pose, weft_pose_camera_position(pose), weft_vec3_of(place[0], place[1], diameter_mm / 2),
-        diameter_mm / 2, d};
+    const sight ball = {camera, pose, weft_pose_camera_position(pose), centre, diameter_mm / 2, d};
     const int box[4] = {(int)(d.x - d.radius), (int)(d.y - d.radius), (int)(d.x + d.radius + 1),
                         (int)(d.y + d.radius + 1)};
     spot s = {0};

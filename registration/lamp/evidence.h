@@ -36,9 +36,8 @@ void weft_paper_places_free(weft_paper_places *places);
 
 /* Looks at every place that the photograph shows large enough, without a clipped value and not too dark to be read. The
  * caller frees samples->sample. Errors: WEFT_SYSTEM for memory. Thread-safe. */
-weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera,
-                                const weft_homography *homography, const weft_light_values *values,
-                                weft_paper_samples *samples, weft_error *error);
+weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera, const weft_plate_view *view,
+                                const weft_light_values *values, weft_paper_samples *samples, weft_error *error);
 
 /* ---- Mirror balls ---- */
 
@@ -49,11 +48,11 @@ typedef struct weft_highlight {
     double deviation_rad; /* standard error of the direction that it mirrors: what a fraction of a pixel makes */
 } weft_highlight;
 
-/* Looks for the brightest small spot within the outline of the ball that touches the plate at (place[0], place[1]), mm,
- * where it mirrors what is above the sheet.
- * A ball that is hidden, or out of the picture, or without a bright spot has none. Pure. */
+/* Looks for the brightest small spot within the outline of the ball that touches the sheet at `place`, mm, where it
+ * mirrors what is above the sheet. A ball that is hidden, or out of the picture, or without a bright spot has none.
+ * Pure. */
 weft_highlight weft_ball_highlight(const weft_camera *camera, const weft_pose *pose, const weft_light_values *values,
-                                   const double place[2], double diameter_mm);
+                                   weft_vec3 place, double diameter_mm);
 
 /* Where the ray from `eye` along the unit vector `ray` meets a mirror ball, and the unit direction in which it goes on.
  * False where it passes. Pure. */
@@ -78,7 +77,7 @@ weft_pin_area weft_pin_area_of(const weft_target *target, double height_mm);
 
 /* Light of the area in one photograph, [rows][columns] in new memory; NaN where it is not seen, or clipped. Errors:
  * WEFT_SYSTEM for memory. Thread-safe. */
-weft_code weft_pin_patch(const weft_pin_area *area, const weft_camera *camera, const weft_homography *homography,
+weft_code weft_pin_patch(const weft_pin_area *area, const weft_camera *camera, const weft_plate_view *view,
                          const weft_light_values *values, float **patch, weft_error *error);
 
 /* Where the centre of the head's shadow lies, and how well that is known: along the shadow and across it, standard

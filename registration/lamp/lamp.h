@@ -55,6 +55,7 @@ typedef struct weft_lamp_problem {
     double ball_diameter_mm;        /* 0: no balls */
     double pin_height_mm;           /* 0: no pin */
     double corner_radius_squared;   /* of the photograph, in the units of the samples' radius_squared */
+    weft_bend bend;                 /* of the sheet */
     bool flash;                     /* the lamp is fixed to the camera */
     bool tone_unknown;              /* find the corrections of the tone curve, too */
 } weft_lamp_problem;
@@ -81,9 +82,9 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
 weft_code weft_exposure_pairs_find(const weft_lamp_problem *problem, weft_exposure_pair *pair, int *count,
                                    weft_error *error);
 
-/* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x under a lamp at L
- * obeys
- *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink + [flash] log beam(x)
+/* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x of the
+ * sheet, whose normal there is n, under a lamp at L obeys
+ *     log light = log level + log((L - x).n |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink + [flash] log beam(x)
  * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere; lamp, head of the
  * pin and its shadow lie on a line; a list is believed within its standard errors. In a pair of exposures the
  * logarithms of the light of a place differ by that of their ratio, which is as written within a fiftieth in green and

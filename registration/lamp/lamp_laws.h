@@ -104,7 +104,7 @@ struct toned_value {
  * would vanish under a curve that is flat. */
 struct paper_residual {
     mounting mount;
-    double x, y, radius_squared, weight;
+    double x, y, z, normal[2], radius_squared, weight; /* the normal is (normal[0], normal[1], 1) */
     toned_value value[3];
     const double *usual_tone; /* whose rise makes errors of values those of light */
     vec3 eye;
@@ -119,12 +119,15 @@ struct paper_residual {
         if (lamp[2] <= T(0.01))
             return false;
         const T dx = lamp[0] - x, dy = lamp[1] - y;
-        const T near_squared = dx * dx + dy * dy + lamp[2] * lamp[2];
+        const T dz = lamp[2] - z, facing = dx * normal[0] + dy * normal[1] + dz;
+        if (facing <= T(0.01))
+            return false;
+        const T near_squared = dx * dx + dy * dy + dz * dz;
         const T far_squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
         const T fall = 1.0 + radius_squared * (vignetting[0] + radius_squared * vignetting[1]);
         if (fall <= T(0.05))
             return false;
-        T common = log(lamp[2]) + log(far_squared) - 1.5 * log(near_squared) + log(fall);
+        T common = log(facing) + log(far_squared) - 1.5 * log(near_squared) + log(fall);
         if (is_ink) {
             const T shine = 1.0 + ink[1] * lobe(lamp, dx, dy, sqrt(near_squared), exp(ink[2]));
             if (shine <= T(0.1))
@@ -165,7 +168,7 @@ struct highlight_residual {
 
     template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
     {
-        const T centre[3] = {touch[0] + shift[0], touch[1] + shift[1], T(radius)};
+        const T centre[3] = {touch[0] + shift[0], touch[1] + shift[1], T(touch[2] + radius)};
         T offset[3], half = T(0), square = T(0);
         for (int i = 0; i < 3; i++) {
             offset[i] = eye[i] - centre[i];
@@ -202,7 +205,7 @@ struct highlight_residual {
 struct pin_residual {
     mounting mount;
     vec3 head; /* by the drawing */
-    double shadow[2], along[2], along_deviation, across_deviation;
+    double shadow[3], along[2], along_deviation, across_deviation;
 
     template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
     {
@@ -213,7 +216,7 @@ struct pin_residual {
             return false;
         for (int axis = 0; axis < 2; axis++) {
             const T at = head[(size_t)axis] + shift[axis];
-            off[axis] = at + (at - lamp[axis]) * height / above - shadow[axis];
+            off[axis] = at + (at - lamp[axis]) * (height - shadow[2]) / above - shadow[axis];
         }
         residual[0] = (off[0] * along[0] + off[1] * along[1]) / along_deviation;
         residual[1] = (off[1] * along[0] - off[0] * along[1]) / across_deviation;

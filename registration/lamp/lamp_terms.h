@@ -76,6 +76,12 @@ class lamp_terms
         return input->flash ? shared.flash : own[(size_t)i].lamp;
     }
 
+    /* Of the sheet. */
+    double height_at(const double place[2]) const
+    {
+        return weft_bend_height(&input->bend, place[0], place[1]) / unit_mm;
+    }
+
     mounting mount_of(int i) const
     {
         return {input->flash, input->evidence[i].pose};
@@ -134,6 +140,11 @@ class lamp_terms
             residual.mount = mount_of(i);
             residual.x = input->places->place[s.place][0] / unit_mm;
             residual.y = input->places->place[s.place][1] / unit_mm;
+            residual.z = height_at(input->places->place[s.place]);
+            const weft_vec3 normal =
+                weft_bend_normal(&input->bend, input->places->place[s.place][0], input->places->place[s.place][1]);
+            residual.normal[0] = normal.x / normal.z;
+            residual.normal[1] = normal.y / normal.z;
             residual.radius_squared = (double)s.radius_squared / input->corner_radius_squared;
             residual.is_ink = is_ink;
             residual.weight = share / (is_ink ? ink_deviation : paper_deviation);
@@ -162,7 +173,7 @@ class lamp_terms
             const highlight_residual residual = {mount_of(i),
                                                  {eye.x / unit_mm, eye.y / unit_mm, eye.z / unit_mm},
                                                  {seen.ray.x, seen.ray.y, seen.ray.z},
-                                                 {place[0] / unit_mm, place[1] / unit_mm, 0},
+                                                 {place[0] / unit_mm, place[1] / unit_mm, height_at(place)},
                                                  input->ball_diameter_mm / 2 / unit_mm,
                                                  seen.deviation_rad};
             double vanishing[3];
@@ -181,13 +192,13 @@ class lamp_terms
         double foot[2];
         weft_target_pin(input->target, foot);
         const double ux = seen.place[0] - foot[0], uy = seen.place[1] - foot[1], length = std::hypot(ux, uy);
-        const pin_residual residual = {
-            mount_of(i),
-            {foot[0] / unit_mm, foot[1] / unit_mm, (input->pin_height_mm - weft_pin_head_radius_mm) / unit_mm},
-            {seen.place[0] / unit_mm, seen.place[1] / unit_mm},
-            {ux / length, uy / length},
-            seen.along_mm / unit_mm,
-            seen.across_mm / unit_mm};
+        const pin_residual residual = {mount_of(i),
+                                       {foot[0] / unit_mm, foot[1] / unit_mm,
+                                        height_at(foot) + (input->pin_height_mm - weft_pin_head_radius_mm) / unit_mm},
+                                       {seen.place[0] / unit_mm, seen.place[1] / unit_mm, height_at(seen.place)},
+                                       {ux / length, uy / length},
+                                       seen.along_mm / unit_mm,
+                                       seen.across_mm / unit_mm};
         double vanishing[2];
         if (!residual(lamp_of(i), shared.pin_shift, vanishing))
             return;

@@ -93,11 +93,11 @@ static bool add_value(const weft_light_values *values, weft_pixel at, double sum
 }
 
 /* The shortest side, in pixels, of a square millimetre seen at a place. */
-static double least_pixels_per_mm(const weft_homography *h, double x, double y)
+static double least_pixels_per_mm(const weft_plate_view *view, double x, double y)
 {
     const double step = 0.05;
-    weft_pixel at = weft_homography_apply(h, x, y), right = weft_homography_apply(h, x + step, y);
-    weft_pixel up = weft_homography_apply(h, x, y + step);
+    weft_pixel at = weft_plate_view_see(view, x, y), right = weft_plate_view_see(view, x + step, y);
+    weft_pixel up = weft_plate_view_see(view, x, y + step);
     double a = (right.x - at.x) / step, b = (up.x - at.x) / step, c = (right.y - at.y) / step, d = (up.y - at.y) / step;
     double squares = a * a + b * b + c * c + d * d, determinant = a * d - b * c;
     /* The smaller singular value of the 2 x 2 derivative. */
@@ -105,20 +105,20 @@ static double least_pixels_per_mm(const weft_homography *h, double x, double y)
 }
 
 static bool sample_place(const weft_paper_places *places, int place, const weft_camera *camera,
-                         const weft_homography *homography, const weft_light_values *values, weft_paper_sample *sample)
+                         const weft_plate_view *view, const weft_light_values *values, weft_paper_sample *sample)
 {
     const double *middle = places->place[place];
     double sum[3] = {0, 0, 0}, margin_mm = places->reach_mm * (clearance - reach) / reach;
-    if (least_pixels_per_mm(homography, middle[0], middle[1]) * margin_mm < least_margin_px)
+    if (least_pixels_per_mm(view, middle[0], middle[1]) * margin_mm < least_margin_px)
         return false;
     for (int i = 0; i < samples_across * samples_across; i++) {
         double x = middle[0] + places->reach_mm * (2.0 * (i % samples_across) / (samples_across - 1) - 1);
         double y = middle[1] + places->reach_mm * (2.0 * (i / samples_across) / (samples_across - 1) - 1);
-        weft_pixel at = weft_camera_distort(camera, weft_homography_apply(homography, x, y));
+        weft_pixel at = weft_camera_distort(camera, weft_plate_view_see(view, x, y));
         if (!add_value(values, at, sum))
             return false;
     }
-    weft_pixel ideal = weft_homography_apply(homography, middle[0], middle[1]);
+    weft_pixel ideal = weft_plate_view_see(view, middle[0], middle[1]);
     double x = (ideal.x - camera->cx) / camera->fx, y = (ideal.y - camera->cy) / camera->fy;
     *sample = (weft_paper_sample){.place = place, .radius_squared = (float)(x * x + y * y)};
     for (int c = 0; c < 3; c++) {
@@ -129,14 +129,13 @@ static bool sample_place(const weft_paper_places *places, int place, const weft_
     return true;
 }
 
-weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera,
-                                const weft_homography *homography, const weft_light_values *values,
-                                weft_paper_samples *samples, weft_error *error)
+weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera, const weft_plate_view *view,
+                                const weft_light_values *values, weft_paper_samples *samples, weft_error *error)
 {
     *samples = (weft_paper_samples){0, malloc((size_t)places->count * sizeof *samples->sample)};
     if (!samples->sample)
         return weft_fail_memory(error, "samples of the paper", (size_t)places->count * sizeof *samples->sample);
     for (int place = 0; place < places->count; place++)
-        samples->count += sample_place(places, place, camera, homography, values, &samples->sample[samples->count]);
+        samples->count += sample_place(places, place, camera, view, values, &samples->sample[samples->count]);
     return WEFT_OK;
 }

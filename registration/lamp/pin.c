@@ -33,7 +33,7 @@ static float light_at(const weft_light_values *values, weft_pixel at)
     return (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * low[0] + u * low[1]);
 }
 
-weft_code weft_pin_patch(const weft_pin_area *area, const weft_camera *camera, const weft_homography *homography,
+weft_code weft_pin_patch(const weft_pin_area *area, const weft_camera *camera, const weft_plate_view *view,
                          const weft_light_values *values, float **patch, weft_error *error)
 {
     size_t texels = (size_t)area->columns * (size_t)area->rows;
@@ -43,7 +43,7 @@ weft_code weft_pin_patch(const weft_pin_area *area, const weft_camera *camera, c
     for (size_t i = 0; i < texels; i++) {
         double x = area->x0 + area->step_mm * (double)(i % (size_t)area->columns);
         double y = area->y0 + area->step_mm * (double)(i / (size_t)area->columns);
-        (*patch)[i] = light_at(values, weft_camera_distort(camera, weft_homography_apply(homography, x, y)));
+        (*patch)[i] = light_at(values, weft_camera_distort(camera, weft_plate_view_see(view, x, y)));
     }
     return WEFT_OK;
 }

@@ -217,9 +217,15 @@ weft_code weft_photographs_check_light(const char *folder, const weft_photograph
 }
 
 /* Paper and ink leave the middle of the tone curve open. */
-weft_code weft_photographs_note(weft_photograph_set *set, weft_error *error)
+weft_code weft_photographs_note(const weft_target *target, weft_photograph_set *set, weft_error *error)
 {
-    const double most = 0.05;
+    const double most = 0.05, bow_mm = weft_lens_bow_mm(&set->lens.bend, target);
+    if (bow_mm > 0)
+        WEFT_TRY(weft_lines_add(
+            &set->notes, error,
+            "the sheet is not flat: its print rises and falls by %.1f mm. Lens, poses and lamps were found "
+            "with this bow; a flat sheet does better",
+            bow_mm));
     if (!(set->lamps.dark_error > most))
         return WEFT_OK;
     return weft_lines_add(&set->notes, error,

@@ -12,7 +12,8 @@
 enum { views_enough = 4 };
 static const double distinct_deg = 10, steepest_at_least_deg = 25;
 
-/* A photograph whose corners lie this many times further off than the median is of another lens, or of a bent sheet. */
+/* A photograph whose corners lie this many times further off than the median is of another lens, or of a sheet that was
+ * bent or moved for it. */
 static const double outlier_ratio = 4, outlier_floor = 4e-4; /* the latter as a share of the longer side */
 
 /* Photographs whose corners lie this near to each other, as a share of the longer side, were taken from a tripod. */
@@ -27,7 +28,43 @@ static const unsigned fixed_terms[] = {
     FIXED_OF_ALL, FIXED_OF_ALL | WEFT_FIX_FOCAL_LENGTH | WEFT_FIX_MIDDLE | WEFT_FIX_K2,
     FIXED_OF_ALL | WEFT_FIX_FOCAL_LENGTH | WEFT_FIX_MIDDLE | WEFT_FIX_K2 | WEFT_FIX_K1};
 
-/* One lens, and a pose for each of the photographs that are used. */
+/* What the bundle adjustment estimates beside the bend, for each weft_lens_knowledge. */
+static const unsigned lens_terms[] = {(1 << WEFT_BUNDLE_BEND) - 1, 1 << WEFT_BUNDLE_K1, 0};
+enum { BEND_TERMS = 7 << WEFT_BUNDLE_BEND };
+
+/* A bend is kept where it lowers the squares of residuals so much, and the F statistic of its three terms over the
+ * photographs is above this. */
+static const double least_gain = 0.02, least_score = 25;
+
+/* Lets the sheet bend. `lens` and `pose` are those of a flat one, and change only where it does not lie flat. */
+static weft_code bend_sheet(const weft_corner_view *view, int count, weft_lens_knowledge knowledge,
+                            weft_lens_estimate *lens, weft_pose *pose, double *rms_px, weft_error *error)
+{
+    weft_bundle bundle = {.camera = lens->camera, .pose = malloc((size_t)count * sizeof *pose)};
+    if (!bundle.pose)
+        return weft_fail_memory(error, "poses", (size_t)count * sizeof *pose);
+    double flat = 0;
+    for (int i = 0; i < count; i++)
+        flat += rms_px[i] * rms_px[i] * view[i].count;
+    memcpy(bundle.pose, pose, (size_t)count * sizeof *pose);
+    weft_code code = weft_bundle_adjust(view, count, lens_terms[knowledge] | BEND_TERMS, &bundle, error);
+    lens->bend = (weft_bend){0, 0, 0};
+    lens->bend_error_mm = 0;
+    if (code == WEFT_OK && bundle.squares < (1 - least_gain) * flat && bundle.bend_score > least_score) {
+        const double *e = bundle.standard_error;
+        lens->camera = bundle.camera;
+        lens->bend = bundle.bend;
+        lens->bend_error_mm = fmax(e[WEFT_BUNDLE_BEND], e[WEFT_BUNDLE_BEND + 2]);
+        lens->errors = (weft_lens_errors){e[WEFT_BUNDLE_FOCAL_LENGTH], e[WEFT_BUNDLE_K1], e[WEFT_BUNDLE_K2]};
+        memcpy(pose, bundle.pose, (size_t)count * sizeof *pose);
+        for (int i = 0; i < count; i++)
+            rms_px[i] = weft_bundle_rms_px(&bundle, i, &view[i]);
+    }
+    free(bundle.pose);
+    return code;
+}
+
+/* One lens, the bend of the sheet where enough views tell it, and a pose for each of the photographs that are used. */
 static weft_code fit(weft_photographs_photograph *photograph, int count, weft_lens_knowledge knowledge,
                      weft_lens_estimate *lens, weft_error *error)
 {
@@ -47,12 +84,14 @@ static weft_code fit(weft_photographs_photograph *photograph, int count, weft_le
     }
     if (code == WEFT_OK)
         code = weft_opencv_calibrate(view, used, fixed_terms[knowledge], true, &lens->camera, &found, error);
+    /* fx follows fy. */
+    lens->errors = (weft_lens_errors){found.standard_error[1], found.standard_error[4], found.standard_error[5]};
+    if (code == WEFT_OK && lens->distinct_views >= views_enough)
+        code = bend_sheet(view, used, knowledge, lens, found.pose, found.view_rms_px, error);
     for (int i = 0; code == WEFT_OK && i < used; i++) {
         photograph[index[i]].pose = found.pose[i];
         photograph[index[i]].corner_rms_px = found.view_rms_px[i];
     }
-    /* fx follows fy. */
-    lens->errors = (weft_lens_errors){found.standard_error[1], found.standard_error[4], found.standard_error[5]};
     free(index);
     free(view);
     free(found.pose);
@@ -133,12 +172,16 @@ static double distance(const weft_homography *homography, const double plate[2],
     return hypot(put.x - straight[0], put.y - straight[1]);
 }
 
-/* Takes out of the photograph the corners that lie more than `reach_px` from where the others put them: one plane, seen
- * through the lens. Something crosses them: a pin, its shadow or the edge of another sheet. Where more than a quarter
- * are off, nothing is taken out: then the photograph is wrong, not a few markers. */
-static weft_code drop_strays_of(const weft_camera *camera, double reach_px, weft_photographs_photograph *photograph,
-                                int *dropped, weft_error *error)
+/* Takes out of the photograph the corners that lie more than `reach_px` from where the others put them: one sheet, seen
+ * through the lens. What the sheet's bend moves them by is taken away first. Something crosses them: a pin, its shadow
+ * or the edge of another sheet. Where more than a quarter are off, nothing is taken out: then the photograph is wrong,
+ * not a few markers. */
+static weft_code drop_strays_of(const weft_lens_estimate *lens, double reach_px,
+                                weft_photographs_photograph *photograph, int *dropped, weft_error *error)
 {
+    const weft_camera *camera = &lens->camera;
+    const weft_homography flat = weft_homography_of_pose(camera, &photograph->pose);
+    const weft_plate_view bent = weft_plate_view_of(camera, &flat, &lens->bend);
     const int count = photograph->corner_count, found = 4 * photograph->marker_count;
     int agreeing = 0;
     double straight[WEFT_PLATE_CORNERS][2];
@@ -150,6 +193,9 @@ static weft_code drop_strays_of(const weft_camera *camera, double reach_px, weft
     for (int i = 0; i < count; i++) {
         weft_pixel pixel = weft_camera_undistort(camera, (weft_pixel){photograph->seen[i][0], photograph->seen[i][1]});
         straight[i][0] = pixel.x, straight[i][1] = pixel.y;
+        weft_pixel level = weft_homography_apply(&flat, photograph->plate[i][0], photograph->plate[i][1]);
+        weft_pixel raised = weft_plate_view_see(&bent, photograph->plate[i][0], photograph->plate[i][1]);
+        straight[i][0] += level.x - raised.x, straight[i][1] += level.y - raised.y;
     }
     weft_code code = weft_opencv_fit_homography((const double(*)[2])photograph->plate, (const double(*)[2])straight,
                                                 count, reach_px, homography.m, agrees, error);
@@ -167,15 +213,15 @@ static weft_code drop_strays_of(const weft_camera *camera, double reach_px, weft
 }
 
 /* Takes single corners out, first: a pin before one marker is no reason to lose a photograph. *dropped: how many. */
-static weft_code drop_strays(weft_photographs_photograph *photograph, int count, const weft_camera *camera,
+static weft_code drop_strays(weft_photographs_photograph *photograph, int count, const weft_lens_estimate *lens,
                              int *dropped, weft_error *error)
 {
-    double limit = outlier_limit(median_rms(photograph, count), camera);
+    double limit = outlier_limit(median_rms(photograph, count), &lens->camera);
     *dropped = 0;
     for (int i = 0; i < count; i++) {
         int own = 0;
         if (weft_photographs_used(&photograph[i]))
-            WEFT_TRY(drop_strays_of(camera, limit, &photograph[i], &own, error));
+            WEFT_TRY(drop_strays_of(lens, limit, &photograph[i], &own, error));
         *dropped += own;
     }
     return WEFT_OK;
@@ -214,8 +260,8 @@ static double median_shift(const weft_photographs_photograph *a, const weft_phot
 }
 
 /* A pose for photographs [index] that were taken from one place: that of all their corners together. */
-static weft_code share_pose(weft_photographs_photograph *photograph, const int *index, int count, weft_camera *camera,
-                            weft_error *error)
+static weft_code share_pose(weft_photographs_photograph *photograph, const int *index, int count,
+                            const weft_lens_estimate *lens, weft_error *error)
 {
     size_t limit = (size_t)count * WEFT_PLATE_CORNERS;
     double(*corner)[2] = malloc(2 * limit * sizeof *corner);
@@ -229,9 +275,9 @@ static weft_code share_pose(weft_photographs_photograph *photograph, const int *
         memcpy(seen + all.count, p->seen, (size_t)p->corner_count * sizeof *seen);
         all.count += p->corner_count;
     }
-    weft_pose pose;
-    weft_corner_fit shared = {.pose = &pose};
-    weft_code code = weft_opencv_calibrate(&all, 1, fixed_terms[WEFT_LENS_KNOWN], true, camera, &shared, error);
+    weft_pose pose = photograph[index[0]].pose;
+    weft_bundle shared = {.camera = lens->camera, .bend = lens->bend, .pose = &pose};
+    weft_code code = weft_bundle_adjust(&all, 1, lens_terms[WEFT_LENS_KNOWN], &shared, error);
     for (int i = 0; code == WEFT_OK && i < count; i++)
         photograph[index[i]].pose = pose;
     free(corner);
@@ -239,9 +285,10 @@ static weft_code share_pose(weft_photographs_photograph *photograph, const int *
 }
 
 /* Photographs from a tripod share a pose. */
-static weft_code share_poses(weft_photographs_photograph *photograph, int count, weft_camera *camera, weft_error *error)
+static weft_code share_poses(weft_photographs_photograph *photograph, int count, const weft_lens_estimate *lens,
+                             weft_error *error)
 {
-    double limit = tripod_share * fmax(camera->width, camera->height);
+    double limit = tripod_share * fmax(lens->camera.width, lens->camera.height);
     int *index = malloc(((size_t)count + 1) * sizeof *index);
     bool *done = calloc((size_t)count + 1, sizeof *done);
     weft_code code = index && done ? WEFT_OK : weft_fail_memory(error, "viewpoints", (size_t)count * 5);
@@ -255,7 +302,7 @@ static weft_code share_poses(weft_photographs_photograph *photograph, int count,
         for (int i = 0; i < together; i++)
             done[index[i]] = true;
         if (together > 1)
-            code = share_pose(photograph, index, together, camera, error);
+            code = share_pose(photograph, index, together, lens, error);
     }
     free(index);
     free(done);
@@ -300,19 +347,37 @@ weft_code weft_lens_estimate_from(weft_photographs_photograph *photograph, int c
     if (known && (known->width != width || known->height != height))
         return weft_fail(error, WEFT_BAD_INPUT, "the lens is of photographs of %d x %d pixels, these have %d x %d",
                          known->width, known->height, width, height);
-    if (known)
+    if (known) {
+        double steepest;
         lens->camera = *known;
-    else
+        WEFT_TRY(fit(photograph, count, WEFT_LENS_KNOWN, lens, error));
+        lens->distinct_views = count_views(photograph, count, &steepest);
+    } else {
         WEFT_TRY(fit_unknown(photograph, count, width, height, lens, error));
+    }
     int wrong;
     do {
         WEFT_TRY(fit(photograph, count, lens->knowledge, lens, error));
-        WEFT_TRY(drop_strays(photograph, count, &lens->camera, &wrong, error));
+        WEFT_TRY(drop_strays(photograph, count, lens, &wrong, error));
         if (!wrong)
             wrong = leave_out(photograph, count, &lens->camera);
     } while (wrong > 0);
     lens->rms_px = rms_of(photograph, count);
-    return share_poses(photograph, count, &lens->camera, error);
+    return share_poses(photograph, count, lens, error);
+}
+
+double weft_lens_bow_mm(const weft_bend *bend, const weft_target *target)
+{
+    enum { grid = 9 };
+    weft_rectangle sheet = weft_target_sheet(target);
+    double least = 0, most = 0;
+    for (int i = 0; i < grid * grid; i++) {
+        double x = sheet.x0 + (sheet.x1 - sheet.x0) * (i % grid) / (grid - 1.0);
+        double y = sheet.y0 + (sheet.y1 - sheet.y0) * (i / grid) / (grid - 1.0);
+        double height = weft_bend_height(bend, x, y);
+        least = fmin(least, height), most = fmax(most, height);
+    }
+    return most - least;
 }
 
 double weft_lens_corner_radius_squared(const weft_camera *camera)

@@ -137,6 +137,7 @@ static weft_code resample(const work *w, weft_photographs_photograph *p, const w
     weft_resampling resampling = {.camera = &w->set->lens.camera,
                                   .inverse_vignetting = w->inverse_vignetting,
                                   .homography = p->homography,
+                                  .bend = w->set->lens.bend,
                                   .opening_mm = w->settings->target.opening_mm,
                                   .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant)),
                                   .fill = true};
@@ -270,6 +271,11 @@ static char *provenance(const work *w)
                              c->vignetting[0], c->vignetting[1], c->vignetting[2], "standard_error", "f", e->focal_px,
                              "k1", e->k1, "k2", e->k2, "opening_mm", w->settings->target.opening_mm, "ink_over_paper",
                              w->set->lamps.ink, "tone", tone, "photographs", photographs);
+    const weft_bend *bend = &w->set->lens.bend;
+    weft_json_put(&root, "bend",
+                  json_pack("{s[fff] sf sf}", "per_mm", bend->xx, bend->xy, bend->yy, "size_mm",
+                            weft_lens_bow_mm(bend, &w->settings->target), "standard_error_mm_at_100_mm",
+                            w->set->lens.bend_error_mm));
     weft_json_put(&root, "tone_curve", pack_knowledge_of_tone(w->set));
     if (w->settings->colour)
         weft_json_put(&root, "colour", weft_colour_pack(w->settings->colour));

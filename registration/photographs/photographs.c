@@ -130,16 +130,19 @@ static weft_code look_for_light(work *w, int index, const weft_light_values *val
         return WEFT_OK;
     evidence->pose = p->pose;
     evidence->exposure = weft_exif_exposure(&p->exif);
-    WEFT_TRY(weft_paper_sample_all(&w->places, camera, &p->homography, values, &evidence->paper, error));
+    const weft_plate_view view = weft_plate_view_of(camera, &p->homography, &w->set->lens.bend);
+    WEFT_TRY(weft_paper_sample_all(&w->places, camera, &view, values, &evidence->paper, error));
     for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT && w->settings->ball_diameter_mm > 0; ball++) {
         double place[2];
         weft_target_ball(&w->settings->target, ball, place);
-        evidence->highlight[ball] = weft_ball_highlight(camera, &p->pose, values, place, w->settings->ball_diameter_mm);
+        double height = weft_bend_height(&w->set->lens.bend, place[0], place[1]);
+        evidence->highlight[ball] = weft_ball_highlight(
+            camera, &p->pose, values, weft_vec3_of(place[0], place[1], height), w->settings->ball_diameter_mm);
     }
     if (w->settings->lights)
         evidence->listed = weft_listed_lamp_of(w->settings->lights, p);
     if (w->pin_patch)
-        return weft_pin_patch(&w->pin_area, camera, &p->homography, values, &w->pin_patch[index], error);
+        return weft_pin_patch(&w->pin_area, camera, &view, values, &w->pin_patch[index], error);
     return WEFT_OK;
 }
 
@@ -264,6 +267,7 @@ static weft_code solve_lamps(const work *w, const weft_lamp_evidence *evidence, 
                                  .ball_diameter_mm = w->settings->ball_diameter_mm,
                                  .pin_height_mm = w->settings->pin_height_mm,
                                  .corner_radius_squared = weft_lens_corner_radius_squared(&set->lens.camera),
+                                 .bend = set->lens.bend,
                                  .flash = w->settings->flash,
                                  .tone_unknown = set->tone_found};
     if (set->tone_found)
@@ -321,6 +325,7 @@ static weft_code refine_and_sample(work *w, weft_error *error)
 {
     WEFT_TRY(
         weft_reduced_sight_create(&w->set->lens.camera, &w->settings->target, typical_scale(w->set), &w->sight, error));
+    w->sight.sight.bend = w->set->lens.bend;
     weft_code code = look_at_all(w, "finding poses and lamps", look_for_light, error);
     weft_reduced_sight_free(&w->sight);
     return code;
@@ -359,7 +364,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     weft_photographs_leave_out_darker(set);
     WEFT_TRY(weft_photographs_check_light(w->folder, w->settings, set, error));
     WEFT_TRY(weft_photographs_check_flash(w->folder, w->settings, set, error));
-    WEFT_TRY(weft_photographs_note(set, error));
+    WEFT_TRY(weft_photographs_note(&w->settings->target, set, error));
     if (!w->settings->colour)
         WEFT_TRY(weft_photographs_note_colours(set, error));
     if (w->settings->lights)

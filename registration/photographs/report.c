@@ -108,6 +108,9 @@ static void write_camera(weft_page *page, const weft_photographs_settings *setti
     fputs("<h2>Camera</h2>\n<table>\n", page->html);
     weft_page_fact(page, "lens", "%s", knowledge_name(set->lens.knowledge));
     write_lens(page, &set->lens);
+    weft_page_fact(page, "sheet",
+                   set->lens.bend_error_mm > 0 ? "not flat: the print rises and falls by %.1f mm" : "flat",
+                   weft_lens_bow_mm(&set->lens.bend, &settings->target));
     weft_page_fact(page, "light in the corner of the picture", "%.0f %% of that in the middle",
                    100 * (1 + r2 * (c->vignetting[0] + r2 * (c->vignetting[1] + r2 * c->vignetting[2]))));
     weft_page_fact(page, "ink against paper", "%.3f", set->lamps.ink);

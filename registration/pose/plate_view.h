@@ -5,6 +5,10 @@
 
 #include "btf/session/camera.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Height of the plate over the plane that touches it at its origin: xx x^2 + xy x y + yy y^2, mm; 1/mm each. */
 typedef struct weft_bend {
     double xx, xy, yy;
@@ -33,4 +37,7 @@ weft_pixel weft_plate_view_meet(const weft_plate_view *view, double u, double v)
 /* Distance of a place along the camera's axis, relative to that of the origin. */
 double weft_plate_view_depth(const weft_plate_view *view, double x_mm, double y_mm);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

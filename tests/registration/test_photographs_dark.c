@@ -40,11 +40,12 @@ static int places_seen(void)
     weft_camera camera = {.width = SIDE, .height = SIDE, .fx = 1200, .fy = 1200, .cx = 299.5, .cy = 299.5};
     weft_pose pose = weft_pose_of_view((weft_angles){0, 0}, 400);
     weft_homography homography = weft_homography_of_pose(&camera, &pose);
+    weft_plate_view view = weft_plate_view_of(&camera, &homography, &(weft_bend){0, 0, 0});
     expect_ok(weft_exif_read("sheet.png", &exif, &error), &error);
     weft_file_range range = weft_file_range_of(&exif, 250.0 / 255);
     expect_ok(weft_light_values_read("sheet.png", SIDE, SIDE, &tone, range, &values, &error), &error);
     expect_ok(weft_paper_places_create(&target, &places, &error), &error);
-    expect_ok(weft_paper_sample_all(&places, &camera, &homography, &values, &samples, &error), &error);
+    expect_ok(weft_paper_sample_all(&places, &camera, &view, &values, &samples, &error), &error);
     int count = samples.count;
     free(samples.sample);
     weft_paper_places_free(&places);

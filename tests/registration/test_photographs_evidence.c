@@ -182,7 +182,8 @@ static void a_highlight_beside_clipped_paper_is_the_lamps(void **state)
         weft_light_values values = draw_ball(&camera, &pose, place, diameter, lamp);
         if (i < 2) /* farther from the highlight than that is wide */
             add_speck(&camera, &values);
-        weft_highlight seen = weft_ball_highlight(&camera, &pose, &values, place, diameter);
+        weft_highlight seen =
+            weft_ball_highlight(&camera, &pose, &values, weft_vec3_of(place[0], place[1], 0), diameter);
         free(values.grey);
         assert_true(seen.found);
         weft_vec3 eye = weft_pose_camera_position(&pose), centre = weft_vec3_of(place[0], place[1], 10);
@@ -208,7 +209,7 @@ static void a_highlight_near_the_rim_is_known_less_well(void **state)
     for (int i = 0; i < 2; i++) {
         weft_vec3 lamp = i ? weft_vec3_of(-600, 0, 250) : weft_vec3_of(500, 0, 400);
         weft_light_values values = draw_ball(&camera, &pose, place, 20, lamp);
-        weft_highlight seen = weft_ball_highlight(&camera, &pose, &values, place, 20);
+        weft_highlight seen = weft_ball_highlight(&camera, &pose, &values, weft_vec3_of(place[0], place[1], 0), 20);
         free(values.grey);
         assert_true(seen.found);
         deviation[i] = seen.deviation_rad;

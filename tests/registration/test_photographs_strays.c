@@ -34,8 +34,32 @@ static weft_pixel seen_at(const weft_camera *lens, const weft_pose *pose, weft_v
     return weft_camera_distort(lens, straight);
 }
 
-/* The sheet rises towards the left and the right, by `bend_mm` at 100 mm from the middle. */
-static weft_photographs_photograph photograph_of(const weft_camera *lens, int number, double bend_mm)
+/* Where a place of a sheet comes to lie. */
+typedef weft_vec3 (*shape)(double x, double y, double amount_mm);
+
+/* It rises towards the left and the right, by `rise_mm` at 100 mm from the middle. */
+static weft_vec3 folded_up(double x, double y, double rise_mm)
+{
+    return weft_vec3_of(x, y, rise_mm * x * x / (100 * 100));
+}
+
+/* Paper does not stretch: it lies on a cylinder about an axis along (0.8, 0.6), its corners lower by `bow_mm`. */
+static weft_vec3 arched(double x, double y, double bow_mm)
+{
+    const double reach = 0.6 * 62 / 32 * opening_mm + 0.8 * 84 / 32 * opening_mm;
+    double radius = reach * reach / (2 * bow_mm), along = 0.8 * x + 0.6 * y, across = 0.6 * x - 0.8 * y;
+    double bent = radius * sin(across / radius), low = radius * (cos(across / radius) - 1);
+    return weft_vec3_of(0.8 * along + 0.6 * bent, 0.6 * along - 0.8 * bent, low);
+}
+
+/* Damp paper: all of it is lower to the sides, as a wave with crest in the middle; steepest half-way. */
+static weft_vec3 domed(double x, double y, double bow_mm)
+{
+    double away = hypot(x, y) / (hypot(62, 84) / 32 * opening_mm);
+    return weft_vec3_of(x, y, -bow_mm * (1 - cos(0.75 * 3.14159265 * away)) / (1 - cos(0.75 * 3.14159265)));
+}
+
+static weft_photographs_photograph photograph_of(const weft_camera *lens, int number, shape sheet, double amount_mm)
 {
     weft_target target = weft_target_printed(opening_mm);
     weft_photographs_photograph p = {0};
@@ -48,7 +72,7 @@ static weft_photographs_photograph photograph_of(const weft_camera *lens, int nu
         for (int corner = 0; corner < 4; corner++) {
             int i = p.corner_count++;
             double x = outline[corner][0], y = outline[corner][1];
-            weft_pixel seen = seen_at(lens, &p.pose, weft_vec3_of(x, y, bend_mm * x * x / (100 * 100)));
+            weft_pixel seen = seen_at(lens, &p.pose, sheet(x, y, amount_mm));
             p.plate[i][0] = x, p.plate[i][1] = y;
             p.seen[i][0] = seen.x + scatter_px * sin(12.9 * i + 7.1 * number);
             p.seen[i][1] = seen.y + scatter_px * sin(4.7 * i + 3.3 * number + 1);
@@ -60,7 +84,7 @@ static weft_photographs_photograph photograph_of(const weft_camera *lens, int nu
 static void photograph_all(weft_photographs_photograph photograph[PHOTOGRAPHS])
 {
     for (int i = 0; i < PHOTOGRAPHS; i++)
-        photograph[i] = photograph_of(&camera, i, 0);
+        photograph[i] = photograph_of(&camera, i, folded_up, 0);
 }
 
 /* Two corners of a marker are found beside an edge that is none of it. */
@@ -80,7 +104,7 @@ static void estimate(weft_photographs_photograph photograph[PHOTOGRAPHS], weft_l
 
 static double view_error_deg(const weft_photographs_photograph *found, int number)
 {
-    weft_photographs_photograph truth = photograph_of(&camera, number, 0);
+    weft_photographs_photograph truth = photograph_of(&camera, number, folded_up, 0);
     weft_vec3 a = weft_unit(weft_pose_camera_position(&found->pose)),
               b = weft_unit(weft_pose_camera_position(&truth.pose));
     return weft_deg_of_rad(acos(fmin(1, weft_dot(a, b))));
@@ -130,8 +154,8 @@ static void a_bent_sheet_and_another_zoom_are_left_out(void **state)
     weft_camera zoomed = camera;
     zoomed.fx = zoomed.fy = 1800;
     photograph_all(photograph);
-    photograph[4] = photograph_of(&camera, 4, 5);
-    photograph[7] = photograph_of(&zoomed, 7, 0);
+    photograph[4] = photograph_of(&camera, 4, folded_up, 5);
+    photograph[7] = photograph_of(&zoomed, 7, folded_up, 0);
     estimate(photograph, &lens);
     for (int i = 0; i < PHOTOGRAPHS; i++) {
         bool wrong = i == 4 || i == 7;
@@ -149,11 +173,65 @@ static void most_corners_of_a_gently_bent_sheet_stay_or_none_count(void **state)
         weft_photographs_photograph photograph[PHOTOGRAPHS];
         weft_lens_estimate lens;
         photograph_all(photograph);
-        photograph[4] = photograph_of(&camera, 4, bend_mm);
+        photograph[4] = photograph_of(&camera, 4, folded_up, bend_mm);
         estimate(photograph, &lens);
         print_message("bent by %.1f mm: %d of %d corners; %s\n", bend_mm, photograph[4].corner_count,
                       WEFT_PLATE_CORNERS, photograph[4].remark);
         assert_true(photograph[4].remark[0] || 4 * photograph[4].corner_count >= 3 * WEFT_PLATE_CORNERS);
+    }
+}
+
+/* A sheet that all photographs show bent is part of what is estimated; the lens is as good as with a flat one. */
+static void a_bowed_sheet_is_found_with_the_lens(void **state)
+{
+    (void)state;
+    static const struct bow {
+        const char *name;
+        shape sheet;
+        double mm;
+    } bows[] = {{"arched", arched, 0.5},
+                {"arched", arched, 1},
+                {"arched", arched, -3},
+                {"domed", domed, 1},
+                {"domed", domed, -1}};
+    weft_target target = weft_target_printed(opening_mm);
+    for (size_t k = 0; k < sizeof bows / sizeof *bows; k++) {
+        weft_photographs_photograph photograph[PHOTOGRAPHS];
+        weft_lens_estimate lens;
+        for (int i = 0; i < PHOTOGRAPHS; i++)
+            photograph[i] = photograph_of(&camera, i, bows[k].sheet, bows[k].mm);
+        cross(&photograph[3], 2, 9);
+        estimate(photograph, &lens);
+        double bow_mm = weft_lens_bow_mm(&lens.bend, &target), middle = lens.bend.xx + lens.bend.yy;
+        print_message("%s by %.1f mm: found %.2f, focal length %.2f %% off +- %.1f\n", bows[k].name, bows[k].mm, bow_mm,
+                      100 * (lens.camera.fx / camera.fx - 1), lens.errors.focal_px);
+        assert_near(bow_mm / fabs(bows[k].mm), 1, 0.25);
+        assert_true(middle * bows[k].mm < 0);
+        assert_near(lens.camera.fx / camera.fx, 1, 0.002);
+        assert_near(lens.camera.fx, camera.fx, 2 * lens.errors.focal_px);
+        for (int i = 0; i < PHOTOGRAPHS; i++) {
+            assert_string_equal(photograph[i].remark, "");
+            assert_true(view_error_deg(&photograph[i], i) < 0.12);
+            assert_int_equal(photograph[i].corner_count, WEFT_PLATE_CORNERS - 2 * (i == 3));
+        }
+    }
+}
+
+/* What scatters, and what the lens has beyond k1 and k2, makes no bow. */
+static void a_flat_sheet_is_called_flat(void **state)
+{
+    (void)state;
+    for (int other = 0; other < 3; other++) {
+        weft_photographs_photograph photograph[PHOTOGRAPHS];
+        weft_lens_estimate lens;
+        weft_camera strange = camera;
+        strange.k3 = other == 1 ? 0.4 : 0;
+        strange.p1 = other == 2 ? 0.001 : 0;
+        for (int i = 0; i < PHOTOGRAPHS; i++)
+            photograph[i] = photograph_of(&strange, i, folded_up, 0);
+        cross(&photograph[5], 0, -12);
+        estimate(photograph, &lens);
+        assert_true(lens.bend.xx == 0 && lens.bend.xy == 0 && lens.bend.yy == 0);
     }
 }
 
@@ -306,6 +384,8 @@ int test_photographs_strays(void)
         cmocka_unit_test(no_corner_is_lost_without_reason),
         cmocka_unit_test(a_bent_sheet_and_another_zoom_are_left_out),
         cmocka_unit_test(most_corners_of_a_gently_bent_sheet_stay_or_none_count),
+        cmocka_unit_test(a_bowed_sheet_is_found_with_the_lens),
+        cmocka_unit_test(a_flat_sheet_is_called_flat),
         cmocka_unit_test(a_folder_of_two_sizes_is_refused),
         cmocka_unit_test(another_lens_is_left_out),
         cmocka_unit_test(a_lamp_that_was_off_is_left_out),

@@ -36,7 +36,7 @@ static double error_deg(const ball *b, const char *path, bool linear, weft_vec3 
                                             (weft_file_range){250.0f / 255, 5.0f / 255}, &values, &error),
                      WEFT_OK);
     const double place[2] = {0, 0};
-    weft_highlight seen = weft_ball_highlight(&b->camera, &b->pose, &values, place, 20);
+    weft_highlight seen = weft_ball_highlight(&b->camera, &b->pose, &values, weft_vec3_of(place[0], place[1], 0), 20);
     weft_light_values_free(&values);
     if (!seen.found)
         return NAN;
