@@ -15,7 +15,7 @@ typedef struct weft_paper_places {
     int count;
     double (*place)[2]; /* [count] */
     bool *is_ink;       /* [count] */
-    double reach_mm;    /* half the side of the square that is averaged */
+    double reach_mm;    /* half the side of the square that is averaged, at most */
 } weft_paper_places;
 
 /* What one photograph shows at one of them. */
@@ -25,16 +25,28 @@ typedef struct weft_paper_sample {
     float radius_squared; /* from the axis of the lens, in focal lengths, undistorted */
 } weft_paper_sample;
 
+/* What becomes of a place in a photograph. */
+typedef enum weft_paper_fate {
+    WEFT_PAPER_SEEN,
+    WEFT_PAPER_OUTSIDE, /* it is not in the picture */
+    WEFT_PAPER_SMALL,   /* so small, or so slanted, that what is beside it shows in it */
+    WEFT_PAPER_CLIPPED,
+    WEFT_PAPER_DARK, /* too dark to be read */
+    WEFT_PAPER_FATES
+} weft_paper_fate;
+
 typedef struct weft_paper_samples {
     int count;
-    weft_paper_sample *sample; /* [count] */
+    weft_paper_sample *sample;  /* [count] */
+    int fate[WEFT_PAPER_FATES]; /* of how many places */
 } weft_paper_samples;
 
 /* Places on a grid. The caller frees with weft_paper_places_free. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_paper_places_create(const weft_target *target, weft_paper_places *places, weft_error *error);
 void weft_paper_places_free(weft_paper_places *places);
 
-/* Looks at every place that the photograph shows large enough, without a clipped value and not too dark to be read. The
+/* Looks at every place that the photograph shows large enough, without a clipped value and not too dark to be read. In
+ * a photograph from the side a smaller square is averaged, so that the same places show to 65 degrees and more. The
  * caller frees samples->sample. Errors: WEFT_SYSTEM for memory. Thread-safe. */
 weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera, const weft_plate_view *view,
                                 const weft_light_values *values, weft_paper_samples *samples, weft_error *error);

@@ -5,7 +5,8 @@
 
 /* In 32nds of the opening's side, as the target is drawn: how far apart places lie, how far around one nothing else may
  * lie, and half the side of the square that is averaged. */
-static const double unit_count = 32, spacing = 2, clearance = 1.1, reach = 0.5, keep_away = 20, printed_beyond = 57;
+static const double unit_count = 32, spacing = 2, clearance = 1.1, reach = 0.5, least_reach = 0.15, keep_away = 20,
+                    printed_beyond = 57;
 
 /* Bilinear samples along a side of the square, and how many pixels its margin must be wide for the point spread. */
 enum { samples_across = 5 };
@@ -75,21 +76,21 @@ void weft_paper_places_free(weft_paper_places *places)
     *places = (weft_paper_places){0};
 }
 
-/* Adds the bilinear value at a pixel; false where it is outside or clipped. */
-static bool add_value(const weft_light_values *values, weft_pixel at, double sum[3])
+/* Adds the bilinear value at a pixel. */
+static weft_paper_fate add_value(const weft_light_values *values, weft_pixel at, double sum[3])
 {
     if (!(at.x >= 0 && at.y >= 0 && at.x < values->width - 1 && at.y < values->height - 1))
-        return false;
+        return WEFT_PAPER_OUTSIDE;
     int x = (int)at.x, y = (int)at.y;
     double u = at.x - x, v = at.y - y;
     const uint16_t *top = values->samples + 3 * ((long)y * values->width + x), *low = top + 3 * (long)values->width;
     for (int c = 0; c < 3; c++) {
         if (top[c] == WEFT_PHOTOGRAPHS_FULL_SCALE || top[c + 3] == WEFT_PHOTOGRAPHS_FULL_SCALE ||
             low[c] == WEFT_PHOTOGRAPHS_FULL_SCALE || low[c + 3] == WEFT_PHOTOGRAPHS_FULL_SCALE)
-            return false;
+            return WEFT_PAPER_CLIPPED;
         sum[c] += (1 - v) * ((1 - u) * top[c] + u * top[c + 3]) + v * ((1 - u) * low[c] + u * low[c + 3]);
     }
-    return true;
+    return WEFT_PAPER_SEEN;
 }
 
 /* The shortest side, in pixels, of a square millimetre seen at a place. */
@@ -104,19 +105,23 @@ static double least_pixels_per_mm(const weft_plate_view *view, double x, double 
     return sqrt(fmax(0, (squares - sqrt(fmax(0, squares * squares - 4 * determinant * determinant))) / 2));
 }
 
-static bool sample_place(const weft_paper_places *places, int place, const weft_camera *camera,
-                         const weft_plate_view *view, const weft_light_values *values, weft_paper_sample *sample)
+static weft_paper_fate sample_place(const weft_paper_places *places, int place, const weft_camera *camera,
+                                    const weft_plate_view *view, const weft_light_values *values,
+                                    weft_paper_sample *sample)
 {
     const double *middle = places->place[place];
-    double sum[3] = {0, 0, 0}, margin_mm = places->reach_mm * (clearance - reach) / reach;
-    if (least_pixels_per_mm(view, middle[0], middle[1]) * margin_mm < least_margin_px)
-        return false;
+    double sum[3] = {0, 0, 0}, unit_mm = places->reach_mm / reach;
+    double margin_mm = least_margin_px / least_pixels_per_mm(view, middle[0], middle[1]);
+    double reach_mm = fmin(places->reach_mm, clearance * unit_mm - margin_mm);
+    if (!(reach_mm >= least_reach * unit_mm))
+        return WEFT_PAPER_SMALL;
     for (int i = 0; i < samples_across * samples_across; i++) {
-        double x = middle[0] + places->reach_mm * (2.0 * (i % samples_across) / (samples_across - 1) - 1);
-        double y = middle[1] + places->reach_mm * (2.0 * (i / samples_across) / (samples_across - 1) - 1);
+        double x = middle[0] + reach_mm * (2.0 * (i % samples_across) / (samples_across - 1) - 1);
+        double y = middle[1] + reach_mm * (2.0 * (i / samples_across) / (samples_across - 1) - 1);
         weft_pixel at = weft_camera_distort(camera, weft_plate_view_see(view, x, y));
-        if (!add_value(values, at, sum))
-            return false;
+        weft_paper_fate fate = add_value(values, at, sum);
+        if (fate != WEFT_PAPER_SEEN)
+            return fate;
     }
     weft_pixel ideal = weft_plate_view_see(view, middle[0], middle[1]);
     double x = (ideal.x - camera->cx) / camera->fx, y = (ideal.y - camera->cy) / camera->fy;
@@ -124,18 +129,19 @@ static bool sample_place(const weft_paper_places *places, int place, const weft_
     for (int c = 0; c < 3; c++) {
         sample->light[c] = (float)(sum[c] / (WEFT_PHOTOGRAPHS_FULL_SCALE * (double)(samples_across * samples_across)));
         if (sample->light[c] < values->dark)
-            return false;
+            return WEFT_PAPER_DARK;
     }
-    return true;
+    return WEFT_PAPER_SEEN;
 }
 
 weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera, const weft_plate_view *view,
                                 const weft_light_values *values, weft_paper_samples *samples, weft_error *error)
 {
-    *samples = (weft_paper_samples){0, malloc((size_t)places->count * sizeof *samples->sample)};
+    *samples = (weft_paper_samples){0, malloc((size_t)places->count * sizeof *samples->sample), {0}};
     if (!samples->sample)
         return weft_fail_memory(error, "samples of the paper", (size_t)places->count * sizeof *samples->sample);
     for (int place = 0; place < places->count; place++)
-        samples->count += sample_place(places, place, camera, view, values, &samples->sample[samples->count]);
+        samples->fate[sample_place(places, place, camera, view, values, &samples->sample[samples->fate[0]])]++;
+    samples->count = samples->fate[WEFT_PAPER_SEEN];
     return WEFT_OK;
 }

@@ -44,6 +44,22 @@ weft_code weft_photographs_check_sizes(const char *folder, const weft_photograph
                                        p->exif.height);
 }
 
+/* ---- Too little paper ---- */
+
+void weft_photographs_say_paperless(const weft_paper_samples *paper, weft_photographs_photograph *photograph)
+{
+    static const char *const reason[WEFT_PAPER_FATES] = {
+        "", "too little of the sheet is in the picture", "the sheet is too small in it, or seen too much from the side",
+        "its paper is overexposed", "its paper is too dark to be read"};
+    int worst = WEFT_PAPER_OUTSIDE, all = paper->count;
+    for (int fate = WEFT_PAPER_OUTSIDE; fate < WEFT_PAPER_FATES; fate++) {
+        worst = paper->fate[fate] > paper->fate[worst] ? fate : worst;
+        all += paper->fate[fate];
+    }
+    snprintf(photograph->remark, sizeof photograph->remark, "%s (%d of %d places); the light cannot be measured",
+             reason[worst], paper->fate[worst], all);
+}
+
 /* ---- Two lenses ---- */
 
 static double focal_length_of(const weft_photographs_photograph *p)

@@ -176,7 +176,7 @@ static void leave_out_paperless(work *w)
     for (int i = 0; i < w->set->count; i++) {
         weft_photographs_photograph *p = &w->set->photograph[i];
         if (weft_photographs_used(p) && w->evidence[i].paper.count < fewest_samples)
-            snprintf(p->remark, sizeof p->remark, "its paper is overexposed or too small to measure the light");
+            weft_photographs_say_paperless(&w->evidence[i].paper, p);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "base/half.h"
 #include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
+#include "registration/lamp/evidence.h"
 #include "registration/lamp/photograph.h"
 #include "registration/lamp/read.h"
 #include "registration/photographs/photographs.h"
@@ -133,6 +134,9 @@ weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int
 weft_code weft_photographs_note(const weft_target *target, weft_photograph_set *set, weft_error *error);
 
 /* ---- Mistakes, named for what they are ---- */
+
+/* Gives a photograph that shows too little paper a remark: why most places of it cannot be used. */
+void weft_photographs_say_paperless(const weft_paper_samples *paper, weft_photographs_photograph *photograph);
 
 /* One contradiction: the error WEFT_BAD_INPUT, or with settings->force a note. */
 __attribute__((format(printf, 5, 6))) weft_code weft_photographs_contradict(const char *folder,

@@ -28,7 +28,8 @@ static void photograph_sheet(int step)
     weft_image_free(&image);
 }
 
-static int places_seen(void)
+/* What becomes of the places of paper when the picture is taken to be one from `theta_deg` and `distance_mm`. */
+static weft_paper_samples look_at_paper(double theta_deg, double distance_mm)
 {
     weft_target target = weft_target_printed(40);
     weft_paper_places places;
@@ -38,7 +39,7 @@ static int places_seen(void)
     weft_error error = {0};
     weft_tone_curve tone = weft_tone_srgb();
     weft_camera camera = {.width = SIDE, .height = SIDE, .fx = 1200, .fy = 1200, .cx = 299.5, .cy = 299.5};
-    weft_pose pose = weft_pose_of_view((weft_angles){0, 0}, 400);
+    weft_pose pose = weft_pose_of_view((weft_angles){weft_rad_of_deg(theta_deg), 0.3}, distance_mm);
     weft_homography homography = weft_homography_of_pose(&camera, &pose);
     weft_plate_view view = weft_plate_view_of(&camera, &homography, &(weft_bend){0, 0, 0});
     expect_ok(weft_exif_read("sheet.png", &exif, &error), &error);
@@ -46,11 +47,15 @@ static int places_seen(void)
     expect_ok(weft_light_values_read("sheet.png", SIDE, SIDE, &tone, range, &values, &error), &error);
     expect_ok(weft_paper_places_create(&target, &places, &error), &error);
     expect_ok(weft_paper_sample_all(&places, &camera, &view, &values, &samples, &error), &error);
-    int count = samples.count;
     free(samples.sample);
     weft_paper_places_free(&places);
     weft_light_values_free(&values);
-    return count;
+    return samples;
+}
+
+static int places_seen(void)
+{
+    return look_at_paper(0, 400).count;
 }
 
 static void paper_below_five_steps_of_its_file_is_not_looked_at(void **state)
@@ -63,6 +68,40 @@ static void paper_below_five_steps_of_its_file_is_not_looked_at(void **state)
     assert_int_equal(places_seen(), 0);
     photograph_sheet(120);
     assert_int_equal(places_seen(), seen);
+}
+
+static void expect_remark(const weft_paper_samples *paper, const char *words)
+{
+    weft_photographs_photograph photograph = {0};
+    weft_photographs_say_paperless(paper, &photograph);
+    assert_non_null(strstr(photograph.remark, words));
+}
+
+/* 3 pixels a millimetre are enough to 66 degrees. What is not seen says why. */
+static void paper_is_seen_from_the_side_and_each_reason_against_it_is_its_own(void **state)
+{
+    (void)state;
+    photograph_sheet(120);
+    weft_paper_samples seen;
+    for (double theta_deg = 50; theta_deg < 67; theta_deg += 8) {
+        seen = look_at_paper(theta_deg, 400);
+        print_message("%.0f degrees: %d seen, %d too small\n", theta_deg, seen.count, seen.fate[WEFT_PAPER_SMALL]);
+        assert_true(seen.count > 600);
+    }
+    seen = look_at_paper(84, 400);
+    assert_true(seen.count < 40);
+    expect_remark(&seen, "too small in it, or seen too much from the side");
+    seen = look_at_paper(0, 60);
+    assert_true(seen.count < 40);
+    expect_remark(&seen, "too little of the sheet is in the picture");
+    photograph_sheet(255);
+    seen = look_at_paper(0, 400);
+    assert_int_equal(seen.count, 0);
+    expect_remark(&seen, "overexposed");
+    photograph_sheet(4);
+    seen = look_at_paper(0, 400);
+    assert_int_equal(seen.count, 0);
+    expect_remark(&seen, "too dark to be read");
 }
 
 /* One step is a fifth of the value there, whatever the file. */
@@ -209,6 +248,7 @@ int test_photographs_dark(void)
         cmocka_unit_test(an_aperture_that_nobody_states_is_the_same_in_all),
         cmocka_unit_test(a_jpeg_named_as_raw_is_not_linear),
         cmocka_unit_test(paper_below_five_steps_of_its_file_is_not_looked_at),
+        cmocka_unit_test(paper_is_seen_from_the_side_and_each_reason_against_it_is_its_own),
         cmocka_unit_test(the_limit_follows_the_bits_of_the_file),
         cmocka_unit_test(dark_texels_are_masked_one_by_one),
         cmocka_unit_test(light_that_contradicts_itself_is_refused),

@@ -57,7 +57,7 @@ static void photograph(scene *s, int i)
     weft_angles view = {weft_rad_of_deg(5 + 55.0 * i / (PHOTOGRAPHS - 1)), 2.4 * i};
     weft_lamp_evidence *e = &s->evidence[i];
     *e = (weft_lamp_evidence){.pose = weft_pose_of_view(view, 380 + 25 * (i % 5)), .exposure = 1 + 0.5 * (i % 3)};
-    e->paper = (weft_paper_samples){PLACES, s->sample[i]};
+    e->paper = (weft_paper_samples){.count = PLACES, .sample = s->sample[i]};
     weft_vec3 eye = weft_pose_camera_position(&e->pose);
     for (int k = 0; k < PLACES; k++) {
         double x = s->place[k][0], y = s->place[k][1];
