@@ -117,11 +117,10 @@ weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smoo
 }
 
 /* Sets of values that are solved for at once: LAPACK's dpbtrs takes one after another, and reads the band anew for
- * each.
- */
-enum { TOGETHER = 16 };
+ * each. As many as a vector register of AVX2 holds: longer vectors are kept in memory by the compiler, at a third of
+ * the speed. */
+enum { TOGETHER = 4 };
 
-/* A vector of the compiler's, which holds sums in registers where an array would be stored and loaded again. */
 typedef double together __attribute__((vector_size(TOGETHER * sizeof(double)), aligned(sizeof(double))));
 
 /* The number of columns is a constant where these are called: their loops are unrolled. */
@@ -144,10 +143,16 @@ static void spread(const weft_smooth_map *map, const float *value, int first, in
 /* Columns that are solved for together, so that a row is read and written once for all of them. */
 enum { BLOCK = 4 };
 
-/* Element (row, column) of L, 0 below the band. */
+/* Element (row, column) of L, within the band. */
 static inline double element(const double *band, int width, int row, int column)
 {
-    return row - column <= width ? band[column * width + row] : 0;
+    return band[column * width + row];
+}
+
+/* The first row that the band of a column does not reach. */
+static inline int row_beyond(int node_count, int width, int column)
+{
+    return column + width + 1 < node_count ? column + width + 1 : node_count;
 }
 
 /* Solves L x = right for `count` columns from `first` on, and takes them out of the rows below. */
@@ -163,13 +168,17 @@ ALWAYS_INLINE void forward(const double *band, int node_count, int width, togeth
         x[k] /= element(band, width, first + k, first + k);
         right[first + k] = x[k];
     }
-    for (int row = first + count; row < node_count && row < first + count + width; row++) {
+    int end_of_first = row_beyond(node_count, width, first), end = row_beyond(node_count, width, first + count - 1);
+    for (int row = first + count; row < end_of_first; row++) {
         together rest = right[row];
 #pragma GCC unroll 4
         for (int k = 0; k < count; k++)
             rest -= element(band, width, row, first + k) * x[k];
         right[row] = rest;
     }
+    for (int row = end_of_first; row < end; row++)
+        for (int k = row - width - first; k < count; k++)
+            right[row] -= element(band, width, row, first + k) * x[k];
 }
 
 /* Solves L' x = right for `count` columns from `first` on, where the rows below are solved. */
@@ -179,11 +188,15 @@ ALWAYS_INLINE void backward(const double *band, int node_count, int width, toget
 #pragma GCC unroll 4
     for (int k = 0; k < count; k++)
         x[k] = right[first + k];
-    for (int row = first + count; row < node_count && row < first + count + width; row++) {
+    int end_of_first = row_beyond(node_count, width, first), end = row_beyond(node_count, width, first + count - 1);
+    for (int row = first + count; row < end_of_first; row++) {
 #pragma GCC unroll 4
         for (int k = 0; k < count; k++)
             x[k] -= element(band, width, row, first + k) * right[row];
     }
+    for (int row = end_of_first; row < end; row++)
+        for (int k = row - width - first; k < count; k++)
+            x[k] -= element(band, width, row, first + k) * right[row];
 #pragma GCC unroll 4
     for (int k = count - 1; k >= 0; k--) {
 #pragma GCC unroll 4
