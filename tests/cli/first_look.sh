@@ -9,7 +9,8 @@ scratch=$(mktemp -d "$PWD/first-look-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# Grey photographs under the lights and views of a list, all of one value: NAME VALUE, angles on stdin.
+# Grey photographs under the lights and views of a list, all of one value, and a material of them: NAME VALUE [OPTION...], angles on
+# stdin. The options are those of compress.
 photograph() {
     mkdir "$1"
     echo "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg" >"$1/directions.csv"
@@ -19,7 +20,9 @@ photograph() {
         echo "$(echo "$angles" | tr , _).png,$angles" >>"$1/directions.csv"
     done
     expect_says "^no heights: " import "$1" -o "$1.btf.h5"
-    expect_ok compress "$1.btf.h5" -o "$1.weft"
+    name=$1
+    shift 2
+    expect_ok compress "$name.btf.h5" "$@" -o "$name.weft"
     grep -q "does not tile" out.log && fail "grey paper is said to have a seam: $(cat out.log)"
     true
 }
@@ -35,7 +38,7 @@ expect_setting() {
 }
 
 # From above, by flash, and dark: 15 degrees about the normal.
-photograph dark "10%" <<ANGLES
+photograph dark "10%" --hold-out off <<ANGLES
 3,0,3,0
 12,0,12,0
 12,72,12,72
@@ -68,7 +71,7 @@ expect_ok render dark.weft --mesh drape --size 120x80 --samples 1 -o drape.png
 expect_setting drape.png mesh drape
 
 # The hemisphere, and bright: the picture of before.
-photograph wide "80%" <<ANGLES
+photograph wide "80%" --hold-out off <<ANGLES
 0,0,0,0
 60,0,70,0
 60,90,70,90
@@ -102,15 +105,15 @@ mkdir slope
 cp alone/directions.csv slope/directions.csv
 convert -size 16x16 -define gradient:angle=90 gradient:gray30-gray50 -depth 16 -type TrueColor "slope/30_0_0_0.png"
 expect_ok import slope -o slope.btf.h5
-expect_says "does not tile: .*(.weft tile slope.weft --blend -o TILE.weft. mends that)" compress slope.btf.h5 -o slope.weft
-expect_says '{"event":"seam","pairs":32,"above_99th":0.5,' compress slope.btf.h5 --json -o slope.weft
+expect_says "does not tile: .*(.weft tile slope.weft --blend -o TILE.weft. mends that)" compress slope.btf.h5 --hold-out off -o slope.weft
+expect_says '{"event":"seam","pairs":32,"above_99th":0.5,' compress slope.btf.h5 --hold-out off --json -o slope.weft
 expect_ok tile slope.weft --blend -o tile.weft
 
 # All of one view, and all of one light: nearly everything lies beyond, and the share tells nothing.
 expect_says "beyond the photographs: every view but one, every light but one" render alone.weft --size 60x40 --samples 1 -o alone.png
-printf '10,0,0,0\n40,0,0,0\n40,120,0,0\n40,240,0,0\n' | photograph above "30%"
+printf '10,0,0,0\n40,0,0,0\n40,120,0,0\n40,240,0,0\n' | photograph above "30%" --hold-out off
 expect_says "beyond the photographs: every view but one, [0-9]* % of the lit cloth is lit" render above.weft --size 60x40 --samples 1 -o above.png
-printf '10,0,0,0\n10,0,40,0\n10,0,40,120\n10,0,40,240\n' | photograph below "30%"
+printf '10,0,0,0\n10,0,40,0\n10,0,40,120\n10,0,40,240\n' | photograph below "30%" --hold-out off
 expect_says "beyond the photographs: [0-9]* % of the lit cloth is seen, every light but one" render below.weft --size 60x40 --samples 1 -o below.png
 
 # A wide picture from one place under four lamps, red above green: the plane shows it once, twice as wide as high.
@@ -122,7 +125,7 @@ for light in "0.1 0 0.99" "0.6 0 0.8" "0 0.6 0.8" "-0.6 0 0.8"; do
     echo "$(echo "$light" | tr ' ' _).png $light" >>wide-lamps/lamps.lp
 done
 expect_ok import wide-lamps -o lamps.btf.h5 --values reflectance
-expect_ok compress lamps.btf.h5 -o lamps.weft
+expect_ok compress lamps.btf.h5 --hold-out off -o lamps.weft
 
 # A line through the middle of a picture, as run lengths of r, g and - (neither): GEOMETRY.
 runs() {

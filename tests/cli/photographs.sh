@@ -21,7 +21,7 @@ refused() {
     [ ! -e refused.btf.h5 ] || fail "a dataset was left behind"
 }
 
-"$weft" synthetic checker --opening 40 -o free --photographs 10 --rubbish 4 --width 900 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o free --photographs 9 --rubbish 4 --width 750 --truth-size 32 -q
 echo nothing >free/broken.jpg
 "$weft" photographs free -o free.btf.h5 --opening 40 --size 32x32 --report report >said 2>/dev/null
 "$python" "$here/photographs.py" free || fail "set free is wrong"
@@ -71,7 +71,7 @@ if [ "${4-}" = long ]; then
     fi
 fi
 
-"$weft" synthetic checker --opening 40 -o linear --photographs 6 --format exr --width 800 --truth-size 32 -q
+"$weft" synthetic checker --opening 40 -o linear --photographs 5 --format exr --width 800 --truth-size 32 -q
 "$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" linear || fail "set linear is wrong"
 

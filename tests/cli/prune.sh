@@ -12,7 +12,7 @@ cd "$scratch"
 simulate_knit
 expect_ok compress knit.btf.h5 -o knit.weft --components 8 --hold-out off
 expect_ok compress knit.btf.h5 -o lobes.weft --lobes 1 --hold-out off
-printf 'time_s,azimuth_deg,elevation_deg,distance,light_phi_deg\n0,-90,80,3,-110\n1,-70,70,3.2,-80\n' >path.csv
+printf 'time_s,azimuth_deg,elevation_deg,distance,light_phi_deg\n0,-90,80,3,-110\n0.3,-70,70,3.2,-80\n' >path.csv
 set -- --mesh plane --light 30,-110 --repeat 12 --size 64x48 --samples 1
 
 # A far camera: finer levels and most views are gone, and pictures stay.

@@ -13,8 +13,8 @@ awk 'BEGIN {
     print "theta_deg,phi_deg"
     print "0,0"
     for (theta = 15; theta <= 75; theta += 20)
-        for (i = 0; i < 8; i++)
-            print theta "," 45 * i + theta
+        for (i = 0; i < 6; i++)
+            print theta "," 60 * i + theta
 }' >directions.csv
 expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --plane top --heights off --size 20x16 --noise 10 --bounces 0 \
     --resolution 40 --directions directions.csv
