@@ -216,7 +216,6 @@ weft_code weft_photographs_check_light(const char *folder, const weft_photograph
     return WEFT_OK;
 }
 
-/* Paper and ink leave the middle of the tone curve open. */
 weft_code weft_photographs_note(const weft_target *target, weft_photograph_set *set, weft_error *error)
 {
     const double most = 0.05, bow_mm = weft_lens_bow_mm(&set->lens.bend, target);
@@ -226,6 +225,14 @@ weft_code weft_photographs_note(const weft_target *target, weft_photograph_set *
             "the sheet is not flat: its print rises and falls by %.1f mm. Lens, poses and lamps were found "
             "with this bow; a flat sheet does better",
             bow_mm));
+    if (set->lens.knowledge == WEFT_LENS_FOCAL_ONLY)
+        WEFT_TRY(weft_lines_add(&set->notes, error,
+                                "the target is seen from %d %s, too few to find the lens: the focal length is as the "
+                                "camera wrote it, and the middle of the picture is taken as its axis. Views, and lamps "
+                                "that balls show, may be off by %.1f degrees (standard error). A lens file (--lens, "
+                                "made by weft lens) makes that smaller",
+                                set->lens.distinct_views, set->lens.distinct_views == 1 ? "direction" : "directions",
+                                set->lens.assumed_error_deg));
     if (!(set->lamps.dark_error > most))
         return WEFT_OK;
     return weft_lines_add(&set->notes, error,

@@ -58,7 +58,7 @@ static weft_code read_all_exif(const char *folder, weft_photograph_set *set, wef
     for (int i = 0; i < set->count; i++) {
         weft_error own = {0};
         weft_code code = read_exif(folder, &set->photograph[i], &own);
-#pragma omp critical(read_all_exif)
+#pragma omp critical(weft_read_all_exif)
         if (code != WEFT_OK && first == WEFT_OK) {
             first = code;
             *error = own;

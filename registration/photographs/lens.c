@@ -366,6 +366,29 @@ weft_code weft_lens_estimate_from(weft_photographs_photograph *photograph, int c
     return share_poses(photograph, count, lens, error);
 }
 
+weft_code weft_lens_assumed_error(const weft_lens_estimate *lens, const weft_photographs_photograph *photograph,
+                                  double *deg, weft_error *error)
+{
+    const double focal_error = 0.015, axis_error = 0.007 * fmax(lens->camera.width, lens->camera.height);
+    const weft_corner_view view = {photograph->corner_count, (const double(*)[2])photograph->plate,
+                                   (const double(*)[2])photograph->seen};
+    double squares = 0;
+    *deg = 0;
+    for (int term = 0; term < 3 && lens->knowledge == WEFT_LENS_FOCAL_ONLY; term++) {
+        weft_pose pose = photograph->pose;
+        weft_bundle other = {.camera = lens->camera, .bend = lens->bend, .pose = &pose};
+        other.camera.fx *= term == 0 ? 1 + focal_error : 1;
+        other.camera.fy *= term == 0 ? 1 + focal_error : 1;
+        other.camera.cx += term == 1 ? axis_error : 0;
+        other.camera.cy += term == 2 ? axis_error : 0;
+        WEFT_TRY(weft_bundle_adjust(&view, 1, lens_terms[WEFT_LENS_KNOWN], &other, error));
+        double cosine = weft_dot(view_of(photograph), weft_unit(weft_pose_camera_position(&pose)));
+        squares += pow(weft_deg_of_rad(acos(fmin(1, cosine))), 2);
+    }
+    *deg = fmin(90, sqrt(squares));
+    return WEFT_OK;
+}
+
 double weft_lens_bow_mm(const weft_bend *bend, const weft_target *target)
 {
     enum { grid = 9 };

@@ -58,10 +58,11 @@ typedef struct weft_lens_estimate {
     weft_camera camera; /* no vignetting */
     weft_lens_knowledge knowledge;
     weft_lens_errors errors;
-    weft_bend bend;       /* of the sheet; zeros where it is flat, or the photographs cannot tell */
-    double bend_error_mm; /* standard error at 100 mm from the middle */
-    int distinct_views;   /* whose directions differ by 10 degrees and more */
-    double rms_px;        /* of all corners used */
+    weft_bend bend;           /* of the sheet; zeros where it is flat, or the photographs cannot tell */
+    double bend_error_mm;     /* standard error at 100 mm from the middle */
+    double assumed_error_deg; /* largest of weft_lens_assumed_error */
+    int distinct_views;       /* whose directions differ by 10 degrees and more */
+    double rms_px;            /* of all corners used */
 } weft_lens_estimate;
 
 /* Estimates the lens from photographs of width x height pixels, or takes `known` where it is not NULL, and the bend of
@@ -71,6 +72,13 @@ typedef struct weft_lens_estimate {
  * written; WEFT_SYSTEM. */
 weft_code weft_lens_estimate_from(weft_photographs_photograph *photograph, int count, int width, int height,
                                   const weft_camera *known, weft_lens_estimate *lens, weft_error *error);
+
+/* Standard error of the direction of the camera in a photograph that is used, degrees, from what of the lens is
+ * assumed, not measured: where the focal length is as the camera wrote it, it errs by 1.5 %, and the axis passes the
+ * middle of the picture by 0.7 % of the longer side in x and in y. The pose is found anew under each. 0 where the lens
+ * is measured. Errors: WEFT_SYSTEM. */
+weft_code weft_lens_assumed_error(const weft_lens_estimate *lens, const weft_photographs_photograph *photograph,
+                                  double *deg, weft_error *error);
 
 /* Largest less smallest height of a sheet that is bent, mm: 0 where it is flat. Pure. */
 double weft_lens_bow_mm(const weft_bend *bend, const weft_target *target);

@@ -276,6 +276,23 @@ static weft_code solve_lamps(const work *w, const weft_lamp_evidence *evidence, 
     return weft_lamp_solve(&problem, &set->lamps, error);
 }
 
+/* What is assumed of the lens makes views err, and lamps with them that balls show. */
+static weft_code state_errors(weft_photograph_set *set, weft_error *error)
+{
+    for (int i = 0; i < set->count; i++) {
+        weft_photographs_photograph *p = &set->photograph[i];
+        double assumed;
+        if (!weft_photographs_used(p))
+            continue;
+        WEFT_TRY(weft_lens_assumed_error(&set->lens, p, &assumed, error));
+        p->view_uncertainty_deg = hypot(weft_photographs_view_error_deg(&set->lens.camera, p), assumed);
+        if (p->lamp.source == WEFT_LAMP_BALLS || p->lamp.source == WEFT_LAMP_FLASH)
+            p->lamp.uncertainty_deg = hypot(p->lamp.uncertainty_deg, assumed);
+        set->lens.assumed_error_deg = fmax(set->lens.assumed_error_deg, assumed);
+    }
+    return WEFT_OK;
+}
+
 static weft_code find_lamps(work *w, weft_error *error)
 {
     weft_photograph_set *set = w->set;
@@ -297,11 +314,7 @@ static weft_code find_lamps(work *w, weft_error *error)
     free(evidence);
     free(index);
     WEFT_TRY(code);
-    for (int i = 0; i < set->count; i++) {
-        if (weft_photographs_used(&set->photograph[i]))
-            set->photograph[i].view_uncertainty_deg =
-                weft_photographs_view_error_deg(&set->lens.camera, &set->photograph[i]);
-    }
+    WEFT_TRY(state_errors(set, error));
     memcpy(set->lens.camera.vignetting, set->lamps.vignetting, sizeof set->lamps.vignetting);
     if (set->tone_found)
         correct_tone(set);

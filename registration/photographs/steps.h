@@ -129,7 +129,8 @@ double weft_photographs_variance(const weft_photograph_set *set, const weft_phot
 weft_code weft_photographs_put_figures(const weft_photograph_set *set, const int *index, int count, double pitch_mm,
                                        weft_dataset_writer *writer, weft_error *error);
 
-/* Adds a line to the notes of `set` where the sheet is not flat, and one where the tone curve leaves dark cloth open.
+/* Adds a line to the notes of `set` where the sheet is not flat, where the lens is assumed, and where the tone curve
+ * leaves dark cloth open.
  * Errors: WEFT_SYSTEM for memory. */
 weft_code weft_photographs_note(const weft_target *target, weft_photograph_set *set, weft_error *error);
 

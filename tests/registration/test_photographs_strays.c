@@ -235,6 +235,30 @@ static void a_flat_sheet_is_called_flat(void **state)
     }
 }
 
+/* From a tripod neither the axis nor the focal length can be measured. What is stated holds for a lens whose axis
+ * passes the middle by 14 pixels, and whose focal length is 2 % longer than the camera wrote. */
+static void a_tripod_states_what_an_assumed_lens_costs(void **state)
+{
+    (void)state;
+    for (int number = 0; number < 8; number += 2) {
+        weft_photographs_photograph photograph[PHOTOGRAPHS];
+        weft_lens_estimate lens;
+        weft_camera skewed = camera;
+        double assumed;
+        skewed.fx = skewed.fy = 2244, skewed.cx = 759.5, skewed.cy = 489.5;
+        for (int i = 0; i < PHOTOGRAPHS; i++) {
+            photograph[i] = photograph_of(&skewed, number, folded_up, 0);
+            photograph[i].exif.focal_length_35mm = 2200 * 43.2666 / hypot(WIDTH, HEIGHT);
+        }
+        estimate(photograph, &lens);
+        assert_int_equal(lens.knowledge, WEFT_LENS_FOCAL_ONLY);
+        expect_ok(weft_lens_assumed_error(&lens, &photograph[0], &assumed, NULL), &(weft_error){0});
+        double off = view_error_deg(&photograph[0], number);
+        print_message("from %.1f degrees: %.2f degrees off, %.2f stated\n", 6.5 * number, off, assumed);
+        assert_true(off < 2 * assumed && assumed < 2 && assumed > 0.02);
+    }
+}
+
 /* ---- Mistakes of people, named for what they are ---- */
 
 enum { COUNT = 8, PICTURE = 64 };
@@ -386,6 +410,7 @@ int test_photographs_strays(void)
         cmocka_unit_test(most_corners_of_a_gently_bent_sheet_stay_or_none_count),
         cmocka_unit_test(a_bowed_sheet_is_found_with_the_lens),
         cmocka_unit_test(a_flat_sheet_is_called_flat),
+        cmocka_unit_test(a_tripod_states_what_an_assumed_lens_costs),
         cmocka_unit_test(a_folder_of_two_sizes_is_refused),
         cmocka_unit_test(another_lens_is_left_out),
         cmocka_unit_test(a_lamp_that_was_off_is_left_out),
