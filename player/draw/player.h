@@ -121,7 +121,7 @@ typedef struct weft_surface_sample {
     float light[3], level;
     float view[3], covered; /* 1 on the mesh, 0 beside it */
     float u, v, key_share;  /* key_share: of the first light that is not in shadow */
-    float sides[4];         /* of the whole pixel, texels (cells of a weave): across, up */
+    float sides[4];         /* of the sample, texels (cells of a weave): across, up */
 } weft_surface_sample;
 
 /* The inputs of the reflectance of `mode` for the scene's first frame, one pane: sample [height][width], row 0 at the

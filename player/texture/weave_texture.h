@@ -10,7 +10,7 @@
 
 #include <stddef.h>
 
-/* Where a pixel covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
+/* Where a sample covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
  * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views.
  * Intensity noise fades likewise, by the size of its own cells. Begins zeroed. */
 typedef struct weft_weave_texture {

@@ -149,6 +149,54 @@ static void noise_of_both_kinds_equals_c_near_and_far(void **state)
     compare_weave(state, "polyester_lining", 20, 3);
 }
 
+static weft_image picture(stage *s, const weft_scene *scene, int width, int height, int samples)
+{
+    weft_error error = {0};
+    weft_image image;
+    expect_ok(weft_player_picture(s->player, scene, width, height, samples, NULL, &image, &error), &error);
+    return image;
+}
+
+/* PSNR of a picture beside one that has SAMPLES times its pixels along each side. */
+static double psnr_of(const weft_image *image, const weft_image *large, int samples)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * image->width * image->height; i++) {
+        int c = i % 3, x = i / 3 % image->width * samples, y = i / 3 / image->width * samples;
+        double mean = 0;
+        for (int k = 0; k < samples * samples; k++)
+            mean += (double)large->pixels[3 * ((y + k / samples) * large->width + x + k % samples) + c];
+        mean /= samples * samples;
+        sum += ((double)image->pixels[i] - mean) * ((double)image->pixels[i] - mean);
+    }
+    return -10 * log10(sum / (3.0 * image->width * image->height));
+}
+
+/* A frame of a mean fades the weave by its own part of the pixel. */
+static void many_samples_show_what_a_larger_picture_shows(void **state)
+{
+    enum { SAMPLES = 4, SMALL_WIDTH = 120, SMALL_HEIGHT = 80 };
+    stage *s = *state;
+    weft_error error = {0};
+    weft_weave weave;
+    expect_ok(weft_weave_read(WEFT_ASSETS "/weaves/wool_gabardine.wv", NULL, 0, &weave, NULL, &error), &error);
+    weft_weave_layout layout = weft_weave_square(&weave);
+    expect_ok(weft_player_set_weave(s->player, &weave, &layout, &error), &error);
+    weft_weave_free(&weave);
+    weft_scene scene = weft_scene_default();
+    scene.repeat = 12;
+    scene.pane_count = 1;
+    scene.pane[0] = WEFT_MODE_ANALYTIC;
+    scene.labels = false;
+    weft_image small = picture(s, &scene, SMALL_WIDTH, SMALL_HEIGHT, SAMPLES);
+    weft_image large = picture(s, &scene, SAMPLES * SMALL_WIDTH, SAMPLES * SMALL_HEIGHT, 1);
+    double psnr = psnr_of(&small, &large, SAMPLES);
+    printf("16 samples a pixel beside a picture four times as large: %.1f dB\n", psnr);
+    assert_true(psnr > 45);
+    weft_image_free(&small);
+    weft_image_free(&large);
+}
+
 static weft_rgba evaluate_threads(void *context, const weft_surface_sample *at)
 {
     weft_vec3 light = stage_vector(at->light);
@@ -181,6 +229,7 @@ int test_analytic_shaders(void)
         cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
         cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
         cmocka_unit_test(noise_of_both_kinds_equals_c_near_and_far),
+        cmocka_unit_test(many_samples_show_what_a_larger_picture_shows),
         cmocka_unit_test(microcylinders_equal_c),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);

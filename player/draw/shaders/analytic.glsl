@@ -1,4 +1,5 @@
-// Analytic cloth: the woven texture where a pixel resolves the yarns, the mean of the tile where it does not.
+// Analytic cloth: the woven texture where a sample resolves the yarns, the mean of the tile where it does not. A sample
+// is a pixel, or the part of it that one of the frames of its mean stands for.
 // Constant defined by player/draw/programs.c: NOISE.
 // C twins: weft_weave_brdf and weft_weave_mean_brdf (tabulated, see player/texture/weave_texture.h).
 uniform sampler2D weave_table;
@@ -8,7 +9,6 @@ uniform vec2 weave_corner;    // where a tile begins, tiles from that of the mat
 uniform uvec2 noise_seed;     // low and high bits
 uniform int chosen_places;    // where STOCHASTIC
 
-// Frames that share a pixel do not sharpen the yarns: a box of a pixel alone leaves moire of threads of its size.
 // log2 of the footprint in cells where the texture begins to fade, and where the mean is all there is.
 const float FADE_BEGIN = -1.0;
 const float FADE_END = 1.0;

@@ -15,7 +15,7 @@ struct MeshPoint {
     mat3 axes;       // in the world: x along u, y across it, the normal
     vec2 coordinate; // texture coordinates of the material, repeated
     float level;     // log2 of the pixel's footprint in texels
-    vec4 sides;      // of the whole pixel, texels: across, up; 0 where the level does not follow from them
+    vec4 sides;      // of the sample, texels: across, up; 0 where the level does not follow from them
 };
 
 // The sides of the pixel in texture space, in texels.
@@ -41,7 +41,7 @@ MeshPoint mesh_point()
     bool automatic = level_choice < -999.0;
     vec4 sides = footprint_of(coordinate);
     float level = automatic ? footprint_level(sides) : level_choice;
-    sides *= automatic && !level_nearest ? 1.0 : 0.0;
+    sides *= automatic && !level_nearest ? exp2(level_bias) : 0.0;
     if (!gl_FrontFacing) {
         n = -n;
         t = -t;

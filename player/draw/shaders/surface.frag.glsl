@@ -4,7 +4,7 @@ uniform highp sampler2D front_depth; // of the layer in front, where BEHIND
 
 layout(location = 0) out vec4 rotation; // unit quaternion: the axes of the surface in the world
 layout(location = 1) out vec4 place;    // texture coordinates, level, distance along the view; negative: mirrored
-layout(location = 2) out vec4 sides;    // of the whole pixel, texels: across, up; 0 where the level does not follow from them
+layout(location = 2) out vec4 sides;    // of the sample, texels: across, up; 0 where the level does not follow from them
 
 // Divides by the largest of the four components (Shepperd 1978). Columns: the axes.
 vec4 quaternion_of(vec3 x, vec3 y, vec3 z)

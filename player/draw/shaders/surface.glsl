@@ -34,7 +34,7 @@ struct SurfacePoint {
     vec3 view;       // in these axes
     vec2 coordinate; // texture coordinates of the material, repeated
     float level;     // log2 of the pixel's footprint in texels, may be negative
-    vec4 sides;      // of the whole pixel, texels: across, up; 0: the level does not follow from it
+    vec4 sides;      // of the sample, texels: across, up; 0: the level does not follow from it
     float key_share; // of the first light that is not in shadow
     float env_share; // of the environment's light, about
     float chance;    // in [0, 1)
