@@ -115,11 +115,10 @@ typedef struct adjustment {
 static double gather_all(adjustment *b, const weft_bundle *at)
 {
     double squares = 0;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < b->count; i++)
+    for (int i = 0; i < b->count; i++) {
         gather(&b->view[i], &(state){at->camera, at->bend, at->pose[i]}, b->terms, &b->equations[i]);
-    for (int i = 0; i < b->count; i++)
         squares += b->equations[i].squares;
+    }
     return squares;
 }
 
