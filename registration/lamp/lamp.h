@@ -65,6 +65,7 @@ typedef struct weft_lamp_solution {
     double tone[WEFT_TONE_TERMS];   /* corrections of the tone curve */
     double vignetting[3];           /* as weft_camera has it */
     double ink;                     /* reflectance of ink over that of paper */
+    double ink_error;               /* its standard error, relative */
     double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
     double dark_error;              /* standard error of the tone curve, relative: of light of a tenth of the paper's; 0
                                        where the curve is known */
@@ -81,6 +82,11 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
  * those of `problem` are not looked at. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_exposure_pairs_find(const weft_lamp_problem *problem, weft_exposure_pair *pair, int *count,
                                    weft_error *error);
+
+/* The corrections of the tone curve that pairs of exposures alone determine, by their law in weft_lamp_solve: where the
+ * search for lamps starts. Of the evidence only the samples of paper count, which may be of any reflectance here.
+ * Errors: WEFT_SYSTEM. */
+weft_code weft_tone_of_pairs(const weft_lamp_problem *problem, double tone[WEFT_TONE_TERMS], weft_error *error);
 
 /* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x of the
  * sheet, whose normal there is n, under a lamp at L obeys

@@ -15,6 +15,38 @@ namespace
 
 using namespace lamps;
 
+weft_code minimise(owned_problem &terms, weft_error *error)
+{
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.num_threads = 2;
+    options.max_num_iterations = 200;
+    options.function_tolerance = 1e-8;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &terms.problem, &summary);
+    return summary.IsSolutionUsable()
+               ? WEFT_OK
+               : weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
+}
+
+/* As weft_lamp_solve does: the second time with the errors of light under the curve that was found first. */
+weft_code find_tone(const weft_lamp_problem *input, double *tone, weft_error *error)
+{
+    double usual_tone[WEFT_TONE_TERMS] = {};
+    std::vector<vec3> ratios((size_t)input->pair_count);
+    owned_problem terms;
+    std::fill_n(tone, WEFT_TONE_TERMS, 0.0);
+    for (int i = 0; i < input->pair_count; i++)
+        add_pair(terms, input, input->pair[i], usual_tone, tone, ratios[(size_t)i].data());
+    terms.add<3 * WEFT_TONE_TERMS, WEFT_TONE_TERMS>(smooth_residual{}, nullptr, tone);
+    for (int round = 0; round < 2; round++) {
+        WEFT_TRY(minimise(terms, error));
+        std::copy_n(tone, WEFT_TONE_TERMS, usual_tone);
+    }
+    return WEFT_OK;
+}
+
 /* The problem, solved: places, what all photographs share, and how well it is known. */
 class lamp_search : lamp_terms
 {
@@ -27,7 +59,7 @@ class lamp_search : lamp_terms
     {
         /* The second time the errors are those of light under the curve that was found the first time. */
         for (int round = 0; round < 2; round++) {
-            WEFT_TRY(minimise(error));
+            WEFT_TRY(minimise(terms, error));
             std::copy_n(shared.tone, WEFT_TONE_TERMS, usual_tone);
         }
         for (int i = 0; i < input->count; i++)
@@ -41,21 +73,6 @@ class lamp_search : lamp_terms
   private:
     weft_lamp_solution *output;
 
-    weft_code minimise(weft_error *error)
-    {
-        ceres::Solver::Options options;
-        options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-        options.num_threads = 2;
-        options.max_num_iterations = 200;
-        options.function_tolerance = 1e-8;
-        options.logging_type = ceres::SILENT;
-        ceres::Solver::Summary summary;
-        ceres::Solve(options, &terms.problem, &summary);
-        return summary.IsSolutionUsable()
-                   ? WEFT_OK
-                   : weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
-    }
-
     /* Standard errors of the lamps' directions from the middle of the sample. */
     void find_uncertainties()
     {
@@ -68,11 +85,21 @@ class lamp_search : lamp_terms
             wanted.emplace_back(lamp_of(i), lamp_of(i));
         if (input->tone_unknown)
             wanted.emplace_back(shared.tone, shared.tone);
+        wanted.emplace_back(shared.ink, shared.ink);
         const bool known = covariance.Compute(wanted, &terms.problem);
         for (int i = 0; i < input->count; i++)
             output->place[i].uncertainty_deg = known ? uncertainty_deg(covariance, i) : 90;
         if (input->tone_unknown)
             output->dark_error = known ? dark_error(covariance) : 1;
+        output->ink_error = known ? ink_error(covariance) : 1;
+    }
+
+    double ink_error(const ceres::Covariance &covariance) const
+    {
+        double matrix[9];
+        if (!covariance.GetCovarianceBlock(shared.ink, shared.ink, matrix))
+            return 1;
+        return std::hypot(std::sqrt(std::max(0.0, matrix[0])), stray_share / std::exp(shared.ink[0]));
     }
 
     /* Logarithm of the light of an encoded value; `basis`: what each coefficient counts for in it. */
@@ -184,6 +211,16 @@ class lamp_search : lamp_terms
 };
 
 } // namespace
+
+extern "C" weft_code weft_tone_of_pairs(const weft_lamp_problem *problem, double tone[WEFT_TONE_TERMS],
+                                        weft_error *error)
+try {
+    return find_tone(problem, tone, error);
+} catch (const std::bad_alloc &) {
+    return weft_fail_memory(error, "the tone curve", 0);
+} catch (const std::exception &failure) {
+    return weft_fail(error, WEFT_SYSTEM, "the tone curve: %s", failure.what());
+}
 
 extern "C" weft_code weft_lamp_solve(const weft_lamp_problem *problem, weft_lamp_solution *solution, weft_error *error)
 try {

@@ -37,6 +37,9 @@ constexpr double beam_power_mean = 1, beam_power_deviation = 1, aim_deviation_mm
  * lens, cos^4; a beam of cos^2 may be turned aside by six degrees. */
 constexpr double beam_mean[WEFT_BEAM_TERMS] = {0, 0, -1, 0, -1}, beam_deviation[WEFT_BEAM_TERMS] = {0.2, 0.2, 1, 1, 1};
 
+/* Light from elsewhere, a hundredth of the lamp's, makes ink a fifth brighter. */
+constexpr double stray_share = 0.01;
+
 /* Tone curves are smooth: of the coefficients, from one to the next, and of that from one to the next. */
 constexpr double tone_deviation = 1, tone_slope_deviation = 0.3, tone_bend_deviation = 0.07;
 

@@ -25,6 +25,49 @@ struct shared_unknowns {
         flash[3], beam[WEFT_BEAM_TERMS];
 };
 
+/* Of light that is decoded as sRGB. */
+inline toned_value toned(float light)
+{
+    toned_value value;
+    const double encoded = (double)weft_srgb_of_linear(light), step = 0.01 * encoded;
+    const double rise = std::log((double)weft_linear_of_srgb((float)(encoded + step)) /
+                                 (double)weft_linear_of_srgb((float)(encoded - step))) /
+                        (2 * step);
+    weft_tone_basis(encoded, value.basis, value.rise_basis);
+    for (double &basis : value.rise_basis)
+        basis /= rise;
+    value.log_light = std::log((double)light);
+    return value;
+}
+
+/* The logarithms of light that both photographs of a pair have at a place. Samples are in the order of
+ * places. */
+inline void add_pair(owned_problem &terms, const weft_lamp_problem *input, const weft_exposure_pair &pair,
+                     const double *usual_tone, double *tone, double *ratio)
+{
+    const weft_paper_samples &bright = input->evidence[pair.bright].paper, &dark = input->evidence[pair.dark].paper;
+    const double share = std::sqrt(independent_pair_samples / (3 * std::max(bright.count, dark.count)));
+    std::fill_n(ratio, 3, pair.log_ratio);
+    for (int i = 0, k = 0; i < bright.count && k < dark.count;) {
+        const weft_paper_sample &a = bright.sample[i], &b = dark.sample[k];
+        i += a.place <= b.place;
+        k += b.place <= a.place;
+        if (a.place != b.place)
+            continue;
+        pair_residual residual = {};
+        residual.usual_tone = usual_tone;
+        for (int c = 0; c < 3; c++) {
+            const double rounding = rounding_deviation / (double)weft_srgb_of_linear(b.light[c]);
+            residual.weight[c] = std::min(1.0, share) / std::hypot(pair_deviation, rounding);
+            residual.bright[c] = toned(a.light[c]);
+            residual.dark[c] = toned(b.light[c]);
+        }
+        terms.add<3, WEFT_TONE_TERMS, 3>(residual, terms.cauchy(3 * share), tone, ratio);
+    }
+    /* As the camera wrote it. The white balance may change, so it holds for green. */
+    terms.prior<3>(ratio, {HUGE_VAL, ratio_deviation, HUGE_VAL}, terms.cauchy(2));
+}
+
 class lamp_terms
 {
   public:
@@ -51,7 +94,7 @@ class lamp_terms
         }
         add_power(guess);
         for (int i = 0; input->tone_unknown && i < input->pair_count; i++)
-            add_pair(input->pair[i], ratios[(size_t)i].data());
+            add_pair(terms, input, input->pair[i], usual_tone, shared.tone, ratios[(size_t)i].data());
         add_priors();
     }
 
@@ -110,21 +153,6 @@ class lamp_terms
             std::nth_element(level.begin(), level.begin() + (long)level.size() / 2, level.end());
             unknowns.level[c] = level[level.size() / 2];
         }
-    }
-
-    /* Of light that is decoded as sRGB. */
-    static toned_value toned(float light)
-    {
-        toned_value value;
-        const double encoded = (double)weft_srgb_of_linear(light), step = 0.01 * encoded;
-        const double rise = std::log((double)weft_linear_of_srgb((float)(encoded + step)) /
-                                     (double)weft_linear_of_srgb((float)(encoded - step))) /
-                            (2 * step);
-        weft_tone_basis(encoded, value.basis, value.rise_basis);
-        for (double &basis : value.rise_basis)
-            basis /= rise;
-        value.log_light = std::log((double)light);
-        return value;
     }
 
     void add_paper(int i)
@@ -240,32 +268,6 @@ class lamp_terms
             terms.add<1, 3, 3, 1>(power_residual{mount_of(i), std::log(input->evidence[i].exposure)}, terms.cauchy(2),
                                   lamp_of(i), own[(size_t)i].level, &shared.power);
         }
-    }
-
-    /* The logarithms of light that both photographs of a pair have at a place. Samples are in the order of places. */
-    void add_pair(const weft_exposure_pair &pair, double *ratio)
-    {
-        const weft_paper_samples &bright = input->evidence[pair.bright].paper, &dark = input->evidence[pair.dark].paper;
-        const double share = std::sqrt(independent_pair_samples / (3 * std::max(bright.count, dark.count)));
-        std::fill_n(ratio, 3, pair.log_ratio);
-        for (int i = 0, k = 0; i < bright.count && k < dark.count;) {
-            const weft_paper_sample &a = bright.sample[i], &b = dark.sample[k];
-            i += a.place <= b.place;
-            k += b.place <= a.place;
-            if (a.place != b.place)
-                continue;
-            pair_residual residual = {};
-            residual.usual_tone = usual_tone;
-            for (int c = 0; c < 3; c++) {
-                const double rounding = rounding_deviation / (double)weft_srgb_of_linear(b.light[c]);
-                residual.weight[c] = std::min(1.0, share) / std::hypot(pair_deviation, rounding);
-                residual.bright[c] = toned(a.light[c]);
-                residual.dark[c] = toned(b.light[c]);
-            }
-            terms.add<3, WEFT_TONE_TERMS, 3>(residual, terms.cauchy(3 * share), shared.tone, ratio);
-        }
-        /* As the camera wrote it. The white balance may change, so it holds for green. */
-        terms.prior<3>(ratio, {HUGE_VAL, ratio_deviation, HUGE_VAL}, terms.cauchy(2));
     }
 
     void hold(double *block)

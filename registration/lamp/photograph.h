@@ -37,6 +37,7 @@ typedef struct weft_photographs_photograph {
     weft_exif exif;
     char remark[192];        /* why it is left out; empty where it is used */
     char colours[200];       /* what the file says of its colours; empty where it is sRGB, or nothing is said */
+    bool assumes_srgb;       /* nothing is said, and the file is neither raw nor of floats */
     weft_colour file_colour; /* to linear sRGB, by that; no terms where there is nothing to do */
     bool is_darker_of_pair;  /* left out as the darker one of a pair, and sound otherwise */
 

@@ -114,8 +114,8 @@ double weft_tone_bend(weft_tone_curve *tone, const double term[WEFT_TONE_TERMS])
 /* ---- The exposure that a camera means ---- */
 
 /* What cameras write: below 100 these numbers and their reciprocals, from there on these of every decade. */
-static const double small[] = {1,  1.3, 1.6, 2,  2.5, 3,  3.2, 4,  5,  6,  6.4, 8, 10,
-                               13, 15,  16,  20, 25,  30, 32,  40, 50, 60, 64,  80};
+static const double small[] = {0.3, 0.6, 0.8, 1,  1.3, 1.6, 2,  2.5, 3,  3.2, 4,  5,  6,  6.4,
+                               8,   10,  13,  15, 16,  20,  25, 30,  32, 40,  50, 60, 64, 80};
 static const double large[] = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.4, 8};
 
 static bool holds(const double *list, size_t count, double value)

@@ -23,6 +23,7 @@ static void take_colours(const weft_colour_claim *claim, weft_photographs_photog
     if (is_raw)
         return;
     bool is_clear = claim->kind == WEFT_CLAIM_CLEAR;
+    photograph->assumes_srgb = claim->kind == WEFT_CLAIM_NONE && !photograph->exif.is_linear;
     if (claim->kind == WEFT_CLAIM_NONE || (is_clear && weft_colour_space_has_srgb_primaries(&claim->space)))
         return;
     snprintf(photograph->colours, sizeof photograph->colours, "%s", claim->words);
@@ -168,9 +169,17 @@ static bool says_the_same(const weft_photographs_photograph *p, const weft_photo
 
 weft_code weft_photographs_note_colours(weft_photograph_set *set, weft_error *error)
 {
-    int used = 0;
-    for (int i = 0; i < set->count; i++)
+    int used = 0, assumed = 0;
+    for (int i = 0; i < set->count; i++) {
         used += weft_photographs_used(&set->photograph[i]);
+        assumed += weft_photographs_used(&set->photograph[i]) && set->photograph[i].assumes_srgb;
+    }
+    if (assumed > 0)
+        WEFT_TRY(
+            weft_lines_add(&set->notes, error,
+                           "colours: sRGB assumed, as %d of %d photographs do not say theirs; --colour gives those "
+                           "of the camera",
+                           assumed, used));
     for (int i = 0; i < set->count; i++) {
         const weft_photographs_photograph *p = &set->photograph[i];
         int before = 0, same = 0;

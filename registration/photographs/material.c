@@ -252,8 +252,8 @@ static json_t *pack_knowledge_of_tone(const weft_photograph_set *set)
         weft_json_append(&pairs,
                          json_pack("[oo]", weft_json_text(bright, strlen(bright)), weft_json_text(dark, strlen(dark))));
     }
-    return json_pack("{sb so sf}", "found", set->tone_found, "exposure_pairs", pairs, "standard_error_of_a_tenth",
-                     set->lamps.dark_error);
+    return json_pack("{sb so sf sf}", "found", set->tone_found, "exposure_pairs", pairs, "standard_error_of_a_tenth",
+                     set->lamps.dark_error, "relative_standard_error_of_ink", set->lamps.ink_error);
 }
 
 static char *provenance(const work *w)

@@ -273,6 +273,8 @@ static weft_code solve_lamps(const work *w, const weft_lamp_evidence *evidence, 
     if (set->tone_found)
         WEFT_TRY(find_pairs(&problem, set, error));
     weft_lamp_guess(&problem, &set->lamps);
+    if (problem.pair_count > 0)
+        WEFT_TRY(weft_tone_of_pairs(&problem, set->lamps.tone, error));
     return weft_lamp_solve(&problem, &set->lamps, error);
 }
 

@@ -7,7 +7,10 @@
 #include <stdlib.h>
 
 enum { reduced_side = 1600 };
-static const double least_correlation = 0.8;
+static const double least_correlation = 0.9;
+
+/* Standard deviation of the point spread, in reduced pixels, from which a photograph is blurred. */
+static const double blurred_px = 2;
 
 /* Pixel centres: the centre of a reduced pixel lies amid those that it averages. */
 static weft_camera reduced_camera(const weft_camera *camera, int reduction)
@@ -66,8 +69,9 @@ static void take(const weft_refinement *refinement, int reduction, weft_photogra
     p->uncertainty_mm = refinement->uncertainty_mm;
     if (!(refinement->correlation >= least_correlation))
         snprintf(p->remark, sizeof p->remark,
-                 "it looks unlike the drawing of the target (correlation %.2f, below %.2f): blurred, or covered",
-                 refinement->correlation, least_correlation);
+                 "it looks unlike the drawing of the target (correlation %.2f, below %.2f): it is %s",
+                 refinement->correlation, least_correlation,
+                 sqrt(refinement->point_spread.constant) > blurred_px ? "blurred" : "covered in part");
     else if (!refinement->converged)
         snprintf(p->remark, sizeof p->remark, "its pose did not settle in %d steps", refinement->iterations);
     p->homography = scaled(&refinement->homography, reduction, middle);

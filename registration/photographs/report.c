@@ -20,8 +20,11 @@ void weft_photographs_describe_tone(const weft_photograph_set *set, char words[W
     if (set->pair_count > 0)
         length += snprintf(words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
                            ", and in %d pairs of photographs that differ in exposure alone", set->pair_count);
-    snprintf(words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
-             "; the light of a tenth of white paper is known to %.1f %% (standard error)", 100 * set->lamps.dark_error);
+    snprintf(
+        words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
+        "; the light of a tenth of white paper is known to %.1f %% (standard error); ink reflects %.3f of the paper, "
+        "known to %.0f %%",
+        100 * set->lamps.dark_error, set->lamps.ink, 100 * set->lamps.ink_error);
 }
 
 void weft_photographs_describe_masks(const weft_photograph_set *set, const weft_photographs_settings *settings,
@@ -113,7 +116,8 @@ static void write_camera(weft_page *page, const weft_photographs_settings *setti
                    weft_lens_bow_mm(&set->lens.bend, &settings->target));
     weft_page_fact(page, "light in the corner of the picture", "%.0f %% of that in the middle",
                    100 * (1 + r2 * (c->vignetting[0] + r2 * (c->vignetting[1] + r2 * c->vignetting[2]))));
-    weft_page_fact(page, "ink against paper", "%.3f", set->lamps.ink);
+    weft_page_fact(page, "ink against paper", "%.3f \u00b1 %.3f (standard error)", set->lamps.ink,
+                   set->lamps.ink * set->lamps.ink_error);
     weft_photographs_describe_tone(set, words);
     weft_page_fact(page, "tone curve", "%s", words);
     weft_photographs_describe_masks(set, settings, words);

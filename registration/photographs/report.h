@@ -9,7 +9,7 @@
 weft_code weft_photographs_report(const char *folder, const char *dataset, const weft_photographs_settings *settings,
                                   const weft_photograph_set *set, weft_error *error);
 
-enum { WEFT_PHOTOGRAPHS_TEXT_SIZE = 200 };
+enum { WEFT_PHOTOGRAPHS_TEXT_SIZE = 280 };
 
 /* What tells the tone curve, and how well, in words. Pure. */
 void weft_photographs_describe_tone(const weft_photograph_set *set, char words[WEFT_PHOTOGRAPHS_TEXT_SIZE]);
