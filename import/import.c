@@ -75,6 +75,19 @@ static weft_code note_partial(weft_import_run *run, weft_error *error)
                           100 * (double)run->lacking / (double)run->samples);
 }
 
+/* A texel without a sample has no colour, and is black in a picture. */
+static weft_code note_unseen(weft_import_run *run, weft_error *error)
+{
+    long texels = (long)run->decoding.width * run->decoding.height, unseen = 0;
+    for (long i = 0; i < texels; i++)
+        unseen += !run->seen[i];
+    if (unseen == 0)
+        return WEFT_OK;
+    return weft_lines_add(&run->report->notes, error,
+                          "%ld of %ld texels are masked in every photograph, and will be black%s", unseen, texels,
+                          run->saturated > 0 ? ": those that are clipped keep their values with --saturated 256" : "");
+}
+
 static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_error *error)
 {
     weft_import_report *report = run->report;
@@ -83,6 +96,8 @@ static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_e
     report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated - run->lacking)));
     WEFT_TRY(note_scale(report, error));
     WEFT_TRY(note_partial(run, error));
+    if (!bonn)
+        WEFT_TRY(note_unseen(run, error));
     WEFT_TRY(weft_check_plausibility(run->collection, run->values, run->light, &report->notes, error));
     WEFT_TRY(weft_colour_messages_note(&run->messages, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, bonn, run->options, &run->decoding, report);
@@ -111,8 +126,11 @@ static weft_code write_dataset(weft_import_run *run, const weft_bonn_file *bonn,
     weft_code code = weft_dataset_writer_create(output, &layout, &run->writer, error);
     weft_dataset_layout_free(&layout);
     size_t count = (size_t)run->collection->count;
+    size_t texels = (size_t)run->decoding.width * (size_t)run->decoding.height;
     if (code == WEFT_OK && !(run->light = calloc(count, sizeof *run->light)))
         code = weft_fail_memory(error, "light", count * sizeof *run->light);
+    if (code == WEFT_OK && !(run->seen = calloc(texels, sizeof *run->seen)))
+        code = weft_fail_memory(error, "texels", texels);
     if (code == WEFT_OK) {
         code = put_images(run, bonn);
         if (code != WEFT_OK && error)
@@ -194,6 +212,7 @@ weft_code weft_import(const char *source, const char *output, const weft_import_
     weft_code code = import_collection(&run, bonn, output, error);
     weft_image_free(&run.first.image);
     free(run.light);
+    free(run.seen);
     weft_collection_free(&collection);
     weft_bonn_file_close(&file);
     if (code != WEFT_OK)

@@ -88,6 +88,12 @@ static weft_code put_photograph(weft_import_run *run, int index, weft_decoded *d
         code = weft_photograph_decode(&run->decoding, path, photograph, &shown, samples, mask, decoded, error);
     if (code == WEFT_OK)
         code = weft_dataset_writer_put_image(run->writer, index, samples, mask, error);
+    for (size_t i = 0; code == WEFT_OK && i < texels; i++) {
+        if (mask[i])
+            continue;
+#pragma omp atomic write
+        run->seen[i] = 1;
+    }
     weft_image_free(&shown.image);
     free(samples);
     free(mask);

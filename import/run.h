@@ -53,6 +53,7 @@ typedef struct weft_import_run {
     int partial, first_partial; /* such files, and the lowest index of one */
     double sum;
     weft_photograph_light *light; /* [collection->count] */
+    uint8_t *seen; /* [height][width] texels that some photograph shows unmasked; not of a file of Bonn */
     weft_colour_messages messages;
 } weft_import_run;
 

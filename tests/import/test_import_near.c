@@ -94,6 +94,44 @@ static void a_missing_photograph_is_masked(void **state)
     folder_remove(&folder);
 }
 
+/* A grey photograph, of which `clipped` pixels of the top row are white. */
+static void photograph_clipped(const test_folder *folder, const char *name, int clipped)
+{
+    weft_image image;
+    assert_int_equal(weft_image_create(PIXELS, PIXELS, &image, NULL), WEFT_OK);
+    for (int i = 0; i < 3 * PIXELS * PIXELS; i++)
+        image.pixels[i] = i < 3 * clipped ? 1 : 0.5f;
+    folder_put_image(folder, name, &image);
+    weft_image_free(&image);
+}
+
+/* Texels that are clipped in one photograph have the other; those of both are named, as pictures show them black. */
+static void texels_that_no_photograph_shows_are_named(void **state)
+{
+    (void)state;
+    for (int both = 0; both < 2; both++) {
+        test_folder folder = folder_make();
+        weft_import_options options = weft_import_defaults();
+        weft_import_report report;
+        folder_put_text(&folder, "camera_pos.txt", "0,0,30\n5,-3,20\n");
+        folder_put_text(&folder, "light_pos.txt", "3,4,12\n-6,2,15\n");
+        folder_put_text(&folder, "light_power.txt", "500,600,700\n");
+        folder_put_text(&folder, "image_size.txt", "8\n");
+        photograph_clipped(&folder, "00.png", both ? 3 : 0);
+        photograph_clipped(&folder, "01.png", 9);
+        assert_int_equal(weft_import(folder.path, folder.dataset, &options, NULL, &report, NULL), WEFT_OK);
+        int named = 0;
+        for (int i = 0; i < report.notes.count; i++) {
+            bool is_it = strstr(report.notes.line[i], "masked in every photograph") != NULL;
+            assert_true(!is_it || strncmp(report.notes.line[i], "3 of 1024 texels", 16) == 0);
+            named += is_it;
+        }
+        assert_int_equal(named, both);
+        weft_import_report_free(&report);
+        folder_remove(&folder);
+    }
+}
+
 static void expect_refusal(const char *name, const char *text, const char *what)
 {
     test_folder folder = white_folder();
@@ -122,6 +160,7 @@ int test_import_near(void)
         cmocka_unit_test(a_white_plane_imports_as_the_cosine_of_its_light),
         cmocka_unit_test(positions_become_millimetres),
         cmocka_unit_test(a_missing_photograph_is_masked),
+        cmocka_unit_test(texels_that_no_photograph_shows_are_named),
         cmocka_unit_test(tables_that_contradict_themselves_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
