@@ -15,8 +15,9 @@ extern "C" {
 WEFT_API weft_code weft_info(const char *path, char **json, weft_error *error);
 
 /* Reads all of it, as `weft verify` does: every checksum and number of a material; every sample of a dataset; every
- * photograph of a session. *json is that of weft_info, with what was counted under "verified". `progress` may be NULL.
- * Errors: as above, naming the first thing that is wrong; of a session, how many things are. */
+ * photograph of a session. *json is that of weft_info; of a dataset or a session it also has what was counted, under
+ * "verified". `progress` may be NULL. Errors: as above, naming the first thing that is wrong; of a session, how many
+ * things are. */
 WEFT_API weft_code weft_check(const char *path, const weft_progress *progress, char **json, weft_error *error);
 
 #ifdef __cplusplus

@@ -17,8 +17,8 @@ extern "C" {
  *
  *     const char *const options[] = {"material=silk.weft", "mesh=sphere", "environment=studio", "size=640x640", NULL};
  *
- * `progress` and `log`, which hears what `weft render` would print, may be NULL. One thread at a time may draw; the
- * current OpenGL context of that thread is another afterwards. Errors: WEFT_BAD_USAGE for an option that cannot be
+ * `progress` and `log` may be NULL; `log` hears what the user should know of the files. One thread at a time may draw;
+ * the current OpenGL context of that thread is another afterwards. Errors: WEFT_BAD_USAGE for an option that cannot be
  * understood; WEFT_BAD_INPUT (WEFT_MISSING, WEFT_DAMAGED, WEFT_NOT_SUPPORTED) for a file that cannot be used;
  * WEFT_SYSTEM where there is no OpenGL 3.3 or the picture cannot be written; WEFT_OUT_OF_MEMORY. */
 WEFT_API weft_code weft_render(const char *const *options, const char *output, const weft_progress *progress,

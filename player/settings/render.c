@@ -8,14 +8,16 @@
 
 enum { MOST_OPTIONS = 256 };
 
+/* The file that `weft render` takes without an option, "material". */
+static const char argument_name[] = "material";
+
 /* "NAME=VALUE" or "NAME". */
 static weft_code find_option(const char *text, weft_given_option *given, weft_error *error)
 {
     size_t length = strcspn(text, "=");
     for (const weft_setting *s = weft_settings_schema(); s->key || s->option.name; s++) {
-        const char *name = s->option.name ? s->option.name : s->key;
-        bool is_option = s->option.name || s->option.argument;
-        if (is_option && strlen(name) == length && strncmp(name, text, length) == 0) {
+        const char *name = s->option.name ? s->option.name : s->option.argument ? argument_name : NULL;
+        if (name && strlen(name) == length && strncmp(name, text, length) == 0) {
             *given = (weft_given_option){s, text[length] ? text + length + 1 : NULL};
             return WEFT_OK;
         }

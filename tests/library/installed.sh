@@ -1,6 +1,6 @@
 #!/bin/bash
-# The installed library in somebody else's program: the example by pkg-config, shared and static, and by CMake; the module for Python. All
-# of them give the values of `weft eval`.
+# The installed library in somebody else's program: the example by pkg-config and by CMake, and the module for Python, give the values of
+# `weft eval`; stages.c goes from a session to a picture.
 # Usage: installed.sh WEFT ASSETS TREE PYTHON
 set -eu
 weft=$1
@@ -53,6 +53,15 @@ grep -q "absent.weft" message || fail "of an absent file the example says $(cat 
 paste -d ' ' values expected | tr ':,' '  ' | awk '
     { for (i = 0; i < 3; i++) if (($(7 + i) - $(11 + i)) ^ 2 > 1e-8) { print; bad = 1 } }
     END { exit bad || NR != 8 }' || fail "weft eval and the example differ"
+
+# Every stage, in a program that sees the public headers alone
+printf 'theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n0,0,0,0\n40,60,0,0\n0,0,30,90\n40,60,30,90\n' >plan.csv
+expect_ok capture --sample "$assets/weaves/polyester_lining.wv" --plan plan.csv --truth-images 1 --truth-size 4 -o session
+cp -r session unfinished
+sed -i '$d' unfinished/journal.jsonl
+# shellcheck disable=SC2046
+cc -std=c17 -Wall -Wextra -Werror "$tree/tests/library/stages.c" $(pkg-config --cflags --libs weft) -o stages
+./stages session unfinished || fail "the stages of the library"
 
 if ! "$python" -c 'import numpy' 2>/dev/null; then
     echo "skipped the module for Python: there is no NumPy"
