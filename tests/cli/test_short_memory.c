@@ -34,7 +34,7 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
-enum { MAX_SAID = 1 << 16, TIME_LIMIT_S = 120, MOST_FAULTS = 20, SYSTEM_FAILURE = 3, LEAKED = 23, FEW_SITES = 5 };
+enum { MAX_SAID = 1 << 16, TIME_LIMIT_S = 120, MOST_FAULTS = 20, SYSTEM_FAILURE = 3, LEAKED = 23, FEW_SITES = 3 };
 
 /* Of processor time that a job may take with --more, about. */
 static const double more_s = 30;

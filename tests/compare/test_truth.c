@@ -337,7 +337,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
     expect_ok(weft_dataset_open("weave.btf.h5", &dataset, &error), &error);
     expect_ok(weft_compress(dataset, &options, NULL, &material, NULL, &error), &error);
     weft_traced_request request = {
-        .dataset = dataset, .material = &material, .stitch = "weave.stitch", .side = 160, .paths = 2, .seed = 1};
+        .dataset = dataset, .material = &material, .stitch = "weave.stitch", .side = 112, .paths = 2, .seed = 1};
     expect_ok(weft_traced_truth_measure(&request, NULL, &truth, &error), &error);
     bool drawn = truth.drawn;
     if (drawn) {

@@ -127,10 +127,11 @@ static void a_difference_has_its_scale_in_png_but_not_among_the_numbers_of_exr(v
         char command[512], with[16], without[16];
         snprintf(with, sizeof with, "with.%s", type[is_png]);
         snprintf(without, sizeof without, "without.%s", type[is_png]);
-        snprintf(command, sizeof command,
-                 "for f in '-o %s' '--no-labels -o %s'; do $WEFT render cloth.weft --raw cloth.btf.h5 "
-                 "--environment none --layout difference --size 400x200 --samples 1 --quiet $f || exit 9; done",
-                 with, without);
+        snprintf(
+            command, sizeof command,
+            "for f in '-o %s' '--no-labels -o %s'; do $WEFT render cloth.weft --raw cloth.btf.h5 "
+            "--environment none --mesh plane --layout difference --size 400x200 --samples 1 --quiet $f || exit 9; done",
+            with, without);
         assert_int_equal(run(command), 0);
         weft_image a = read_picture(with, 400, 200), b = read_picture(without, 400, 200);
         int differing = 0;
@@ -146,7 +147,7 @@ static void a_difference_has_its_scale_in_png_but_not_among_the_numbers_of_exr(v
 #define MANY_OPTIONS                                                                                                   \
     "--raw cloth.btf.h5 --weave $WEAVES/cotton_denim.wv --mode compressed,analytic --layout wipe --divider 0.4 "       \
     "--light 31.7,12.9,0.8 --light 60,100,0.1,0.2,0.3 --shadows --exposure 1.3 --tone soft --camera=-33.3,21,2.9 "     \
-    "--lobes-on 1 --table-bits 5 --level nearest --mesh-size 123 --size 90x60 --samples 1 --quiet"
+    "--lobes-on 1 --table-bits 5 --level nearest --mesh plane --mesh-size 123 --size 90x60 --samples 1 --quiet"
 
 static void a_picture_can_be_drawn_again_bit_for_bit(void **state)
 {
@@ -264,12 +265,12 @@ static void a_path_gives_a_picture_for_every_frame(void **state)
 static void a_sequence_on_a_full_disk_stops_with_whole_pictures(void **state)
 {
     (void)state;
-    assert_int_equal(
-        run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; rm -rf full; mkdir full; "
-            "(ulimit -f 40; $WEFT render cloth.weft --environment none --path near.csv --fps 3 --size 300x300 "
-            "--samples 1 -q "
-            "-o full/f%d.exr)"),
-        WEFT_SYSTEM);
+    assert_int_equal(run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; rm -rf full; mkdir full; "
+                         "(ulimit -f 20; $WEFT render cloth.weft --environment none --mesh sphere --path near.csv "
+                         "--fps 3 --size 200x200 "
+                         "--samples 1 -q "
+                         "-o full/f%d.exr)"),
+                     WEFT_SYSTEM);
     expect_said("full/f");
     assert_int_equal(run("ls -A full | grep -v '^f[0-9].exr$'"), 1);
     assert_int_equal(

@@ -17,7 +17,7 @@ static const double opening_mm = 32, camera_mm = 520, light_mm = 700, focal_px =
 
 /* Degrees: theta, phi. */
 static const double view_deg[OTHER_RIG_VIEWS][2] = {{0, 0}, {30, 40}, {45, 160}, {60, 250}, {75, 10}, {70, 320}};
-static const double light_deg[OTHER_RIG_LIGHTS][2] = {{12, 75}, {40, 200}, {68, 330}};
+static const double light_deg[OTHER_RIG_LIGHTS][2] = {{12, 75}, {68, 330}};
 
 other_rig other_rig_off(void)
 {

@@ -14,7 +14,7 @@
 
 #include "btf/session/session.h"
 
-enum { OTHER_RIG_VIEWS = 6, OTHER_RIG_LIGHTS = 3, OTHER_RIG_SHOTS = OTHER_RIG_VIEWS * OTHER_RIG_LIGHTS };
+enum { OTHER_RIG_VIEWS = 6, OTHER_RIG_LIGHTS = 2, OTHER_RIG_SHOTS = OTHER_RIG_VIEWS * OTHER_RIG_LIGHTS };
 
 /* What the session does not say. */
 typedef struct other_rig {

@@ -86,17 +86,37 @@ static double radiance(const plate_scene *scene, double x, double y)
     return light * (((int)floor(x / 2) + (int)floor(y / 2)) % 2 ? 0.7 : 0.1);
 }
 
+/* The undistorted place of a pixel, and what one pixel to the right and one down add to it: over some pixels the lens
+ * is straight to a thousandth of one. */
+typedef struct lens_at_pixel {
+    weft_pixel middle, right, down;
+} lens_at_pixel;
+
+static lens_at_pixel lens_at(const weft_camera *camera, int px, int py)
+{
+    weft_pixel middle = weft_camera_undistort(camera, (weft_pixel){px, py}),
+               right = weft_camera_undistort(camera, (weft_pixel){px + 1, py}),
+               down = weft_camera_undistort(camera, (weft_pixel){px, py + 1});
+    return (lens_at_pixel){middle, {right.x - middle.x, right.y - middle.y}, {down.x - middle.x, down.y - middle.y}};
+}
+
 static double pixel_value(const plate_scene *scene, const weft_camera *camera, const weft_pose *pose, int px, int py,
                           unsigned *state)
 {
     double depth, sum = 0, focus = pose->translation.z;
-    meet_plate(camera, pose, weft_camera_undistort(camera, (weft_pixel){px, py}), &depth);
+    const lens_at_pixel l = lens_at(camera, px, py);
+    meet_plate(camera, pose, l.middle, &depth);
     double radius = scene->aperture * fabs(1 - focus / depth);
     for (int i = 0; i < supersamples * supersamples; i++) {
         double lens = sqrt(plate_uniform(state)) * radius, azimuth = 2 * WEFT_PI * plate_uniform(state), z;
-        weft_pixel at = {px - 0.5 + (i % supersamples + plate_uniform(state)) / supersamples + lens * cos(azimuth),
-                         py - 0.5 + (i / supersamples + plate_uniform(state)) / supersamples + lens * sin(azimuth)};
-        weft_vec3 point = meet_plate(camera, pose, weft_camera_undistort(camera, at), &z);
+        double x = (i % supersamples + plate_uniform(state)) / supersamples - 0.5;
+        double y = (i / supersamples + plate_uniform(state)) / supersamples - 0.5;
+        if (radius > 0) {
+            x += lens * cos(azimuth);
+            y += lens * sin(azimuth);
+        }
+        weft_pixel at = {l.middle.x + x * l.right.x + y * l.down.x, l.middle.y + x * l.right.y + y * l.down.y};
+        weft_vec3 point = meet_plate(camera, pose, at, &z);
         sum += radiance(scene, point.x, point.y);
     }
     double value = sum / (supersamples * supersamples);

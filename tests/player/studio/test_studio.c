@@ -4,6 +4,7 @@
 #include "player/draw/pace.h"
 #include "player/scene/surroundings.h"
 #include "studio.h"
+#include "tests/support/suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -209,7 +210,7 @@ static void unlit_folds_are_not_black_and_lit_ones_not_white(void **state)
     stage *s = *state;
     weft_error error = {0};
     weft_surface_sample *at;
-    for (int i = 0; weft_surroundings_names[i]; i++) {
+    for (int i = 0; i < (suite_argument ? 3 : 1); i++) {
         studio_show(s->player, "drape");
         weft_scene scene = studio_scene(s->player, weft_surroundings_names[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
         scene.tone = WEFT_TONE_SOFT;
