@@ -357,8 +357,12 @@ weft_code weft_lens_estimate_from(weft_photographs_photograph *photograph, int c
     }
     int wrong;
     do {
+        wrong = 0;
         WEFT_TRY(fit(photograph, count, lens->knowledge, lens, error));
-        WEFT_TRY(drop_strays(photograph, count, lens, &wrong, error));
+        if (lens->knowledge == WEFT_LENS_UNKNOWN)
+            WEFT_TRY(weft_lens_leave_out_second(lens, photograph, count, &wrong, error));
+        if (!wrong)
+            WEFT_TRY(drop_strays(photograph, count, lens, &wrong, error));
         if (!wrong)
             wrong = leave_out(photograph, count, &lens->camera);
     } while (wrong > 0);

@@ -73,6 +73,11 @@ typedef struct weft_lens_estimate {
 weft_code weft_lens_estimate_from(weft_photographs_photograph *photograph, int count, int width, int height,
                                   const weft_camera *known, weft_lens_estimate *lens, weft_error *error);
 
+/* Where one lens explains the corners badly and two explain them well: gives the photographs of the lens that took
+ * fewer a remark. Poses and corner_rms_px are those of `one`. Errors: WEFT_SYSTEM. */
+weft_code weft_lens_leave_out_second(const weft_lens_estimate *one, weft_photographs_photograph *photograph, int count,
+                                     int *left_out, weft_error *error);
+
 /* Standard error of the direction of the camera in a photograph that is used, degrees, from what of the lens is
  * assumed, not measured: where the focal length is as the camera wrote it, it errs by 1.5 %, and the axis passes the
  * middle of the picture by 0.7 % of the longer side in x and in y. The pose is found anew under each. 0 where the lens

@@ -235,6 +235,34 @@ static void a_flat_sheet_is_called_flat(void **state)
     }
 }
 
+/* Half of the photographs, or some, are of a lens that is shorter by a tenth or more. No file says so. */
+static void photographs_of_two_lenses_are_parted(void **state)
+{
+    (void)state;
+    for (int others = 3; others <= PHOTOGRAPHS / 2; others++) {
+        for (int shorter = 0; shorter < 3; shorter++) {
+            weft_photographs_photograph photograph[PHOTOGRAPHS];
+            weft_lens_estimate lens;
+            weft_camera second = camera;
+            second.fx = second.fy = (double[]){1100, 1600, 1980}[shorter];
+            second.k1 = 0.05;
+            for (int i = 0; i < PHOTOGRAPHS; i++)
+                photograph[i] = photograph_of(i % 2 && i / 2 < others ? &second : &camera, i, folded_up, 0);
+            estimate(photograph, &lens);
+            int kept[2] = {0, 0};
+            for (int i = 0; i < PHOTOGRAPHS; i++) {
+                bool is_second = i % 2 && i / 2 < others, is_used = photograph[i].remark[0] == 0;
+                kept[is_second] += is_used;
+                assert_true(is_used || strstr(photograph[i].remark, "another lens"));
+            }
+            print_message("%d of %.0f pixels: kept %d and %d\n", others, second.fx, kept[0], kept[1]);
+            assert_int_equal(fmin(kept[0], kept[1]), 0);
+            assert_int_equal(kept[0] + kept[1], kept[0] ? PHOTOGRAPHS - others : others);
+            assert_near(lens.camera.fx, kept[0] ? camera.fx : second.fx, 6);
+        }
+    }
+}
+
 /* From a tripod neither the axis nor the focal length can be measured. What is stated holds for a lens whose axis
  * passes the middle by 14 pixels, and whose focal length is 2 % longer than the camera wrote. */
 static void a_tripod_states_what_an_assumed_lens_costs(void **state)
@@ -410,6 +438,7 @@ int test_photographs_strays(void)
         cmocka_unit_test(most_corners_of_a_gently_bent_sheet_stay_or_none_count),
         cmocka_unit_test(a_bowed_sheet_is_found_with_the_lens),
         cmocka_unit_test(a_flat_sheet_is_called_flat),
+        cmocka_unit_test(photographs_of_two_lenses_are_parted),
         cmocka_unit_test(a_tripod_states_what_an_assumed_lens_costs),
         cmocka_unit_test(a_folder_of_two_sizes_is_refused),
         cmocka_unit_test(another_lens_is_left_out),
