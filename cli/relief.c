@@ -59,7 +59,7 @@ static void say_report(const relief_command *command, const weft_relief_report *
 {
     const weft_common_options *common = &command->common;
     weft_heights_say(common, report);
-    weft_command_say(common, "plane     %.3f mm above that of the texels", report->plane_mm);
+    weft_command_say(common, "plane     %.3f mm above the plane of the texels", report->plane_mm);
     weft_command_say(common, "heights   searched from %.3f to %.3f mm in %d x %d places; the material %s",
                      report->low_mm, report->high_mm, report->width, report->height,
                      report->repeats ? "repeats" : "does not repeat");

@@ -15,8 +15,8 @@ weft_code weft_reduced_size(int source_width, int source_height, int asked, int 
     *height = (int)((long)source_height * *width / source_width);
     if (*height < 1)
         return weft_fail(error, WEFT_BAD_USAGE,
-                         "photographs of %d x %d pixels cannot become %d texels wide: that is %g high", source_width,
-                         source_height, *width, (double)source_height * *width / source_width);
+                         "photographs of %d x %d pixels cannot become %d texels wide: they would be %g texels high",
+                         source_width, source_height, *width, (double)source_height * *width / source_width);
     return WEFT_OK;
 }
 

@@ -136,7 +136,7 @@ static void write_facts(weft_page *page, const weft_relief_report *report)
                    100 * ratio(report->error.heights, report->error.plane));
     weft_page_tile(page, "of the error if flat, through the best plane", "%.0f %%",
                    100 * ratio(report->error.plane, report->error.flat));
-    weft_page_tile(page, "best plane above that of the texels", "%.3f mm", report->plane_mm);
+    weft_page_tile(page, "best plane above the plane of the texels", "%.3f mm", report->plane_mm);
     fputs("</div>\n<table>\n", page->html);
     weft_page_fact(page, "material", "%.3g \u00d7 %.3g mm, %s", report->width_mm, report->height_mm,
                    report->repeats ? "repeats" : "does not repeat");

@@ -75,7 +75,7 @@ static void add_table(const bench_plan *plan, const texel_source *source, const 
         above_in_rmse += sqrt(found[i].fast) > 1.02 * sqrt(found[i].best_random);
     }
     report_table(plan->report, "quality",
-                 "What a fit from nothing leaves: residual over that of others, %d texels, %d lobes + T", count,
+                 "Residual of a fit from nothing, over the residual of other fits: %d texels, %d lobes + T", count,
                  plan->lobe_count);
     report_row(plan->report, "%s", source->name);
     report_number(plan->report, "of converged", 4, fast / converged);
