@@ -280,7 +280,7 @@ static void suggest_lobes(run_state *state)
     double lobe_error = of_lobe.material.all.relative_rmse;
     if (lobe_error < clearly_less * components_error)
         weft_command_say(&state->command->common,
-                         "components leave %.1f %% %s, one lobe %.1f %%: try --lobes 1, 2 or 3, or --preset best",
+                         "components err by %.1f %% %s, one lobe by %.1f %%: try --lobes 1, 2 or 3, or --preset best",
                          100 * components_error, weft_hold_out_about(&state->held_out), 100 * lobe_error);
 }
 
