@@ -90,7 +90,6 @@ static weft_code refuse_idle(const render_command *command, weft_error *error)
         {"noise", s->weave || s->scene.noise_seed == 0, "--weave CLOTH.wv"},
         {"lobes-on", s->material, "NAME.weft"},
         {"tables", s->material, "NAME.weft"},
-        {"table-bits", s->material, "NAME.weft"},
         {"environment-turn", s->environment, "--environment MAP.hdr"},
         {"environment-strength", s->environment, "--environment MAP.hdr"},
         {"environment-reference", s->environment, "--environment MAP.hdr"},
@@ -122,11 +121,10 @@ static weft_code check(void *values, weft_error *error)
 /* Whether something of lobes or tables is asked for that components do not have. */
 static bool asks_of_lobes(const weft_scene *scene)
 {
-    const weft_scene usual = weft_scene_default();
     bool some_off = !scene->view_table || !scene->light_table;
     for (int i = 0; i < WEFT_SCENE_MAX_LOBES; i++)
         some_off |= !scene->lobe[i];
-    return some_off || scene->table_bits != usual.table_bits;
+    return some_off;
 }
 
 /* Chooses what the command line left open, and says what that was. A linear picture keeps its numbers. */
@@ -144,8 +142,7 @@ static weft_code look(const render_command *command, weft_player *player, weft_s
     if (text[0])
         weft_command_say(common, "%s", text);
     if (weft_player_drawn_components(player, scene) > 0 && asks_of_lobes(scene))
-        weft_command_say(common, "the material is drawn by its components: --lobes-on, --tables and --table-bits "
-                                 "change nothing");
+        weft_command_say(common, "the material is drawn by its components: --lobes-on and --tables change nothing");
     return WEFT_OK;
 }
 

@@ -25,7 +25,6 @@ typedef struct weft_variant {
     bool over_half_vector, kriged; /* their maps (player/texture/material_texture.h) */
     int lobe_count;
     bool view_table, light_table;
-    bool fewer_bits; /* of T and S than they have */
     bool pruned;     /* tinted where the scene that it was pruned for does not reach */
 } weft_variant;
 

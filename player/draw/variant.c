@@ -27,7 +27,6 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
                      (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
         weft_gl_set_float(program, "view_table_share", scene->view_table);
         weft_gl_set_float(program, "light_table_share", scene->light_table);
-        weft_gl_set_float(program, "table_steps", (1 << scene->table_bits) - 1);
         break;
     default:
         if (weft_player_has_threads(p))
@@ -68,7 +67,6 @@ weft_variant weft_player_variant(const weft_player *p, const weft_scene *scene, 
         variant.lobe_count = p->material.lobe_count;
         variant.view_table = p->material.table.count > 0;
         variant.light_table = p->material.light_table.count > 0;
-        variant.fewer_bits = scene->table_bits < 8;
         variant.pruned = scene->show_extrapolation && p->material.visibility.maps;
         variant.component_groups = uses_components(p, scene) ? p->material.components.group_count : 0;
         variant.drawn_groups = weft_player_drawn_components(p, scene) / WEFT_COMPONENTS_GROUP;
@@ -90,7 +88,7 @@ weft_variant weft_player_casting_variant(const weft_player *p, const weft_scene 
     const weft_pane pane = {.mode = mode};
     weft_variant variant = weft_player_variant(p, scene, &pane);
     variant.casts = variant.opacity = variant.one_light = true;
-    variant.shadows = variant.pruned = variant.fewer_bits = false;
+    variant.shadows = variant.pruned = false;
     variant.chosen_lights = 0;
     variant.stochastic = is_soft;
     variant.relief = variant.relief && !is_soft;

@@ -29,7 +29,6 @@ weft_scene weft_scene_default(void)
         .view_table = true,
         .light_table = true,
         .components = 64,
-        .table_bits = 8,
         .labels = true,
     };
 }

@@ -76,7 +76,6 @@ typedef struct weft_scene {
     int components;                  /* its first components, where it has some; 0: its lobes */
     bool lobe[WEFT_SCENE_MAX_LOBES]; /* each lobe on or off */
     bool view_table, light_table;
-    int table_bits; /* 1 to 8: T and S as if coded with so many */
     int noise_seed; /* of the weave's irregularities; 0: none */
     /* What is drawn over the truth */
     bool show_level;         /* the mip level in false colour */

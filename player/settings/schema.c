@@ -414,8 +414,6 @@ static const weft_setting schema[] = {
     SETTING("model.light_table", SWITCH(scene.light_table)),
     SETTING(NULL, OPTION("tables", "both|view|light|none", EVALUATION, "Only these tables of the material"),
             .read = choose_tables),
-    SETTING("model.table_bits", OPTION("table-bits", "N", EVALUATION, "Tables as if coded with N bits, 1 to 8"),
-            WHOLE(scene.table_bits, 1, 8)),
     SETTING("model.noise_seed",
             OPTION("noise", "SEED|off", EVALUATION,
                    "Irregularities of the weave, as its file gives them, from this number on (default: off)"),

@@ -162,6 +162,8 @@ static weft_code read_settings(json_t *root, const char *source, weft_settings *
     snprintf(where, sizeof where, "the settings in '%s'", source);
     WEFT_TRY(weft_settings_init(settings, error));
     WEFT_TRY(check_version(root, where, error));
+    /* Pictures of before 0.2 also say in how many bits tables were shown. */
+    json_object_del(json_object_get(root, "model"), "table_bits");
     WEFT_TRY(weft_settings_read_json(weft_settings_schema(), root, where, settings, error));
     if (!settings->mesh)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: 'files.mesh' must not be null", where);

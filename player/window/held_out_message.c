@@ -8,7 +8,7 @@ bool weft_draws_whole_material(const weft_scene *scene, int components, bool has
         return false;
     if (components > 0)
         return scene->components >= components;
-    bool is_whole = scene->view_table && scene->light_table && scene->table_bits == 8;
+    bool is_whole = scene->view_table && scene->light_table;
     for (int lobe = 0; lobe < WEFT_SCENE_MAX_LOBES; lobe++)
         is_whole = is_whole && scene->lobe[lobe];
     return is_whole;

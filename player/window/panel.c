@@ -256,7 +256,6 @@ static void material_section(weft_application *a)
     weft_ui_disable(!light_table);
     i->changed |= weft_ui_toggle("Light table S", &scene->light_table);
     weft_ui_enable();
-    i->changed |= weft_ui_whole("Table bits", &scene->table_bits, 1, 8);
 }
 
 /* ---- Picture ---- */

@@ -147,7 +147,7 @@ static void a_difference_has_its_scale_in_png_but_not_among_the_numbers_of_exr(v
 #define MANY_OPTIONS                                                                                                   \
     "--raw cloth.btf.h5 --weave $WEAVES/cotton_denim.wv --mode compressed,analytic --layout wipe --divider 0.4 "       \
     "--light 31.7,12.9,0.8 --light 60,100,0.1,0.2,0.3 --shadows --exposure 1.3 --tone soft --camera=-33.3,21,2.9 "     \
-    "--lobes-on 1 --table-bits 5 --level nearest --mesh plane --mesh-size 123 --size 90x60 --samples 1 --quiet"
+    "--lobes-on 1 --tables view --level nearest --mesh plane --mesh-size 123 --size 90x60 --samples 1 --quiet"
 
 static void a_picture_can_be_drawn_again_bit_for_bit(void **state)
 {
@@ -339,7 +339,6 @@ static void options_that_would_do_nothing_are_refused(void **state)
         {"cloth.weft --noise 3", "--noise needs --weave"},
         {"--weave $WEAVES/cotton_denim.wv --lobes-on 1", "--lobes-on needs NAME.weft"},
         {"--weave $WEAVES/cotton_denim.wv --tables view", "--tables needs NAME.weft"},
-        {"--weave $WEAVES/cotton_denim.wv --table-bits 4", "--table-bits needs NAME.weft"},
         {"cloth.weft --environment-turn 30", "needs --environment"},
         {"cloth.weft --environment-strength 2", "needs --environment"},
         {"cloth.weft --environment-reference", "needs --environment"},

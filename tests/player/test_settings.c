@@ -63,8 +63,7 @@ static void every_value_is_read(void **state)
     assert_true(scene->level_choice == WEFT_LEVEL_FIXED && scene->level == 1.1);
     assert_true(scene->filter == WEFT_FILTER_STOCHASTIC && !scene->view_table && !scene->light_table);
     assert_int_equal(s.raw_format, WEFT_RAW_BC6H);
-    assert_true(scene->lobe[0] && !scene->lobe[1] && scene->lobe[2] && scene->table_bits == 3 &&
-                scene->noise_seed == 5);
+    assert_true(scene->lobe[0] && !scene->lobe[1] && scene->lobe[2] && scene->noise_seed == 5);
     assert_true(scene->layout == WEFT_LAYOUT_WIPE && scene->divider == 0.25 && scene->pane_count == 2);
     assert_true(scene->pane[0] == WEFT_MODE_ANALYTIC && scene->pane[1] == WEFT_MODE_RAW);
     assert_true(scene->show_level && scene->show_extrapolation && !scene->labels);

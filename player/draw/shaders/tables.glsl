@@ -1,11 +1,9 @@
 // The tables T and S of a material, and its opacity, which is coded in T. All levels lie side by side in each texture
 // (player/texture/mip_layout.h).
-// Constant defined by player/draw/programs.c: FEWER_BITS (see table_steps).
 // Fetched by textureLod at the middle of texels: software rasterisers take longer over texelFetch, which may name a
 // level.
 uniform sampler2DArray material_table;       // views in columns, then components
 uniform sampler2DArray material_light_table; // lights alike
-uniform float table_steps; // where FEWER_BITS: what 255 would be if T and S were coded in them
 uniform int level_count;
 uniform vec2 texel_step; // 1 / size of the texture of all levels
 uniform float table_columns, light_table_columns;
@@ -30,8 +28,6 @@ vec4 table_value(sampler2DArray table, vec2 texel, Entries entries)
     for (int i = 0; i < 3; i++) {
         vec2 place = vec2(texel.x * entries.tile + entries.column[i], texel.y);
         vec4 code = textureLod(table, vec3(place, entries.layer[i]), 0.0);
-        if (FEWER_BITS)
-            code.rgb = floor(code.rgb * table_steps + 0.5) / table_steps;
         sum += entries.weight[i] * vec4(code.rgb * code.rgb, code.a);
     }
     return sum;

@@ -32,7 +32,6 @@ static const hint hints[] = {
     {"Components / 4", "fewer components are coarser and drawn faster"},
     {"View table T", "what the lobes lack, by the direction of the eye"},
     {"Light table S", "what the lobes lack, by the direction of the light"},
-    {"Table bits", "shows T and S as if they were stored in so many bits"},
     /* Weave */
     {"Yarn", "the one that the sliders change"},
     {"Change all yarns like it", "those of the same direction and numbers, too"},

@@ -56,9 +56,6 @@ static void lobes_without_a_part_are_not_what_was_measured(void **state)
     scene = weft_scene_default();
     scene.light_table = false;
     assert_false(weft_draws_whole_material(&scene, 0, false));
-    scene = weft_scene_default();
-    scene.table_bits = 7;
-    assert_false(weft_draws_whole_material(&scene, 0, false));
 }
 
 static void heights_that_are_left_out_are_not_what_was_measured(void **state)

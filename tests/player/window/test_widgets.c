@@ -69,7 +69,7 @@ static void a_hint_is_shown_all_along_its_widget(void **state)
     static const struct {
         widget *put;
         const char *label;
-    } widgets[] = {{slider, "Strength"}, {whole, "Table bits"}, {whole_input, "Seed"}, {colour, "Irradiance"}};
+    } widgets[] = {{slider, "Strength"}, {whole, "Yarn"}, {whole_input, "Seed"}, {colour, "Irradiance"}};
     for (size_t i = 0; i < sizeof widgets / sizeof *widgets; i++) {
         const char *label = widgets[i].label;
         assert_non_null(weft_hint_of(label));
