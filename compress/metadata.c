@@ -56,7 +56,7 @@ static void append_errors(json_t **list, const weft_component_errors *errors)
     weft_json_append(list, json_pack("[f, f]", errors->linear, errors->screen));
 }
 
-/* Errors of linear light and on a screen of three forms and four exponents; those that were not tried are 0. Scattered
+/* Errors of linear light and on a screen of three forms and of all exponents; those that were not tried are 0. Scattered
  * images try two maps. */
 static json_t *list_trials(const weft_components_report *report)
 {

@@ -112,16 +112,25 @@ static bool is_finite(weft_half half)
     return (half & 0x7c00) != 0x7c00;
 }
 
-/* Clears samples under a mask. */
+static bool is_lower_bound(const weft_half rgb[3])
+{
+    bool is = true;
+    for (int c = 0; c < 3; c++)
+        is = is && is_finite(rgb[c]) && weft_float_of_half(rgb[c]) >= 0;
+    return is;
+}
+
+/* Clears samples under a mask, except for what is but saturated. */
 static weft_code clean(const weft_scratch *scratch, int image, weft_half *samples, const uint8_t *mask,
                        weft_error *error)
 {
     size_t width = (size_t)scratch->width, count = width * (size_t)scratch->height;
     for (size_t i = 0; i < count; i++) {
         weft_half *rgb = samples + 3 * i;
-        if (mask && mask[i])
-            memset(rgb, 0, 3 * sizeof *rgb);
-        else if (!is_finite(rgb[0]) || !is_finite(rgb[1]) || !is_finite(rgb[2]))
+        if (mask && mask[i]) {
+            if (mask[i] != WEFT_MASK_SATURATED || !is_lower_bound(rgb))
+                memset(rgb, 0, 3 * sizeof *rgb);
+        } else if (!is_finite(rgb[0]) || !is_finite(rgb[1]) || !is_finite(rgb[2]))
             return weft_fail(error, WEFT_BAD_INPUT, "'%s': image %d, texel (%zu, %zu): a valid sample is not finite",
                              scratch->path, image, i % width, i / width);
     }

@@ -77,19 +77,19 @@ static void free_matrices(matrices *m)
 }
 
 /* The samples of a texel that a matrix is of: those of one channel, or all. */
-static void gather(const matrices *m, int matrix, size_t texel, float *vector, uint8_t *valid)
+static void gather(const matrices *m, int matrix, size_t texel, float *vector, uint8_t *known)
 {
     size_t images = (size_t)m->subset->layout.image_count;
     memset(vector, 0, m->length * sizeof *vector);
     for (int i = 0; i < m->image_count; i++) {
         size_t at = texel * images + (size_t)m->image[i];
         float channel[CHANNELS];
-        valid[i] = !m->subset->mask[at];
+        known[i] = !m->subset->mask[at];
         for (int c = 0; c < CHANNELS; c++)
             channel[c] = weft_float_of_half(m->subset->samples[CHANNELS * at + (size_t)c]);
         if (table[m->kind].is_log)
             code_log(channel);
-        for (int c = 0; c < CHANNELS && valid[i]; c++)
+        for (int c = 0; c < CHANNELS && known[i]; c++)
             vector[CHANNELS * i + c] = m->matrix_count == 1 || c == matrix ? channel[c] : 0;
     }
 }
@@ -102,7 +102,7 @@ static weft_code find_matrix(matrices *m, int matrix, weft_error *error)
     WEFT_TRY(weft_training_allocate((texels + step - 1) / step, m->length, (size_t)m->image_count, &training, error));
     for (int t = 0; t < training.texel_count; t++)
         gather(m, matrix, (size_t)(t * step), training.vector + (size_t)t * m->length,
-               training.valid + (size_t)t * (size_t)m->image_count);
+               training.known + (size_t)t * (size_t)m->image_count);
     weft_factorisation *factorisation = &m->factorisation[matrix];
     weft_code code = weft_factorisation_find(&training, table[m->kind].terms[matrix], factorisation, error);
     weft_training_free(&training);
@@ -129,12 +129,12 @@ static weft_code find_matrices(matrices *m, const uint8_t *left_out, weft_error 
 
 /* ---- Their product ---- */
 
-static weft_code multiply(const matrices *m, int matrix, const float *vector, const uint8_t *valid, float *sum,
+static weft_code multiply(const matrices *m, int matrix, const float *vector, const uint8_t *known, float *sum,
                           weft_error *error)
 {
     float coefficient[WEFT_COMPONENTS_MAX];
     const weft_factorisation *factorisation = &m->factorisation[matrix];
-    WEFT_TRY(weft_projector_solve(&m->projector[matrix], &vector, &valid, 1, coefficient, error));
+    WEFT_TRY(weft_projector_solve(&m->projector[matrix], &vector, &known, 1, coefficient, error));
     for (int k = 0; k < factorisation->count; k++)
         for (size_t i = 0; i < CHANNELS * (size_t)m->image_count; i++)
             sum[i] += coefficient[k] * factorisation->vector[(size_t)k * factorisation->length + i];
@@ -142,19 +142,19 @@ static weft_code multiply(const matrices *m, int matrix, const float *vector, co
 }
 
 /* `vector` and `sum` are of the length of the samples, `sum` is 0. */
-static weft_code restore_texel(const matrices *m, size_t texel, float *vector, float *sum, uint8_t *valid,
+static weft_code restore_texel(const matrices *m, size_t texel, float *vector, float *sum, uint8_t *known,
                                weft_half *samples, weft_error *error)
 {
     for (int matrix = 0; matrix < m->matrix_count; matrix++) {
-        gather(m, matrix, texel, vector, valid);
-        WEFT_TRY(multiply(m, matrix, vector, valid, sum, error));
+        gather(m, matrix, texel, vector, known);
+        WEFT_TRY(multiply(m, matrix, vector, known, sum, error));
     }
     for (int i = 0; i < m->image_count; i++) {
         float *channel = sum + CHANNELS * i;
         weft_half *sample = samples + CHANNELS * (texel * (size_t)m->subset->layout.image_count + (size_t)m->image[i]);
         if (table[m->kind].is_log)
             weft_bonn_colour_restore(&log_colours, channel, 1, 1);
-        for (int c = 0; c < CHANNELS && valid[i]; c++)
+        for (int c = 0; c < CHANNELS && known[i]; c++)
             sample[c] = weft_half_of_float(channel[c]);
     }
     return WEFT_OK;
@@ -164,14 +164,14 @@ static weft_code restore_texels(const matrices *m, weft_half *samples, weft_erro
 {
     size_t texels = (size_t)m->subset->layout.width * (size_t)m->subset->layout.height;
     float *vector = aligned_alloc(64, 2 * m->length * sizeof *vector);
-    uint8_t *valid = malloc((size_t)m->image_count);
-    weft_code code = vector && valid ? WEFT_OK : weft_fail_memory(error, "samples", m->length * sizeof *vector);
+    uint8_t *known = malloc((size_t)m->image_count);
+    weft_code code = vector && known ? WEFT_OK : weft_fail_memory(error, "samples", m->length * sizeof *vector);
     for (size_t t = 0; t < texels && code == WEFT_OK; t++) {
         memset(vector + m->length, 0, m->length * sizeof *vector);
-        code = restore_texel(m, t, vector, vector + m->length, valid, samples, error);
+        code = restore_texel(m, t, vector, vector + m->length, known, samples, error);
     }
     free(vector);
-    free(valid);
+    free(known);
     return code;
 }
 

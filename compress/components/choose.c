@@ -21,10 +21,14 @@ enum {
     USUAL = 2            /* ... the one that forms are tried with, and that few images have */
 };
 
-static const float exponent_of[WEFT_COMPONENT_EXPONENTS] = {1, 1.5f, 2, 2.4f};
+static const float exponent_of[WEFT_COMPONENT_EXPONENTS] = {1, 1.5f, 2, 2.4f, 3};
 
 /* What the coding for a screen may leave of linear light, as a multiple of the least. */
 static const double most_of_linear = 1.05;
+
+/* What a larger exponent must leave at most of the error of a smaller one: levels of coded values are nearer to means the
+ * smaller it is. */
+static const double worth_an_exponent = 0.98;
 
 /* Powers of l . h and l_z. */
 static const struct {
@@ -152,10 +156,10 @@ static weft_code find_coefficients(const trial *t, weft_error *error)
 #pragma omp parallel for schedule(dynamic, 8)
     for (int i = 0; i < texels; i++) {
         const float *vector = t->part->vector + (size_t)i * t->part->length;
-        const uint8_t *valid = t->part->valid + (size_t)i * t->part->image_count;
+        const uint8_t *known = t->part->known + (size_t)i * t->part->image_count;
         weft_error own = {0};
         weft_code code =
-            weft_projector_solve(&projector, &vector, &valid, 1, t->coefficient + (size_t)i * (size_t)count, &own);
+            weft_projector_solve(&projector, &vector, &known, 1, t->coefficient + (size_t)i * (size_t)count, &own);
         if (code == WEFT_OK)
             continue;
 #pragma omp critical(weft_find_coefficients)
@@ -189,7 +193,7 @@ static squares squares_of(const trial *t, const weft_component_maps *maps, int h
     for (int texel = 0; texel < t->part->texel_count; texel++) {
         const float *own = t->coefficient + (size_t)texel * (size_t)count;
         const float *sample = t->whole->vector + (size_t)texel * t->whole->length + 3 * (size_t)image;
-        if (!t->whole->valid[(size_t)texel * t->whole->image_count + (size_t)image])
+        if (t->whole->known[(size_t)texel * t->whole->image_count + (size_t)image] != WEFT_SAMPLE_VALID)
             continue;
         for (int c = 0; c < 3; c++) {
             float value = 0;
@@ -311,6 +315,11 @@ static int best_form(const weft_component_trial *tried, bool for_screen)
     return best;
 }
 
+static double measure_of(const weft_component_errors *errors, bool for_screen)
+{
+    return for_screen ? errors->screen : errors->linear;
+}
+
 static int best_exponent(const weft_component_trial *tried, bool for_screen)
 {
     int best = for_screen ? USUAL : LINEAR;
@@ -320,30 +329,59 @@ static int best_exponent(const weft_component_trial *tried, bool for_screen)
             linear = fmin(linear, tried->of_exponent[i].linear);
     for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++) {
         const weft_component_errors *own = &tried->of_exponent[i];
-        double measure = for_screen ? own->screen : own->linear;
-        if (own->linear > 0 && own->linear <= most_of_linear * linear && measure < least) {
-            least = measure;
+        if (own->linear > 0 && own->linear <= most_of_linear * linear &&
+            measure_of(own, for_screen) < worth_an_exponent * least) {
+            least = measure_of(own, for_screen);
             best = i;
         }
     }
     return best;
 }
 
-/* Few views are carried over the light: they do not tell how a highlight moves with the view. */
-static weft_code try_all(const weft_component_images *images, const weft_training *some, const split *s,
-                         int component_count, bool for_screen, weft_component_trial *tried, weft_error *error)
+/* What all trials share. */
+typedef struct trials {
+    const weft_component_images *images;
+    const weft_training *some; /* linear */
+    const split *split;
+    int component_count, form;
+    bool for_screen;
+    weft_component_trial *tried;
+} trials;
+
+static weft_code try_number(const trials *t, int number, weft_error *error)
 {
-    int count = component_count < MOST_COMPONENTS ? component_count : MOST_COMPONENTS;
-    int forms = images->view_count < FEW_VIEWS ? 1 : WEFT_COMPONENT_FORMS;
-    WEFT_TRY(try_exponent(images, some, s, count, exponent_of[USUAL], 0, forms, tried->of_form, error));
-    int chosen = best_form(tried, for_screen);
-    tried->image_count = s->held_count;
-    tried->of_exponent[USUAL] = tried->of_form[chosen];
-    for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++)
-        if (i != USUAL)
-            WEFT_TRY(try_exponent(images, some, s, count, exponent_of[i], chosen, chosen + 1, &tried->of_exponent[i],
-                                  error));
+    return try_exponent(t->images, t->some, t->split, t->component_count, exponent_of[number], t->form, t->form + 1,
+                        &t->tried->of_exponent[number], error);
+}
+
+/* That of linear light; from the usual one on, as long as the next is better; and what lies between these two, unless
+ * it would be too small. */
+static weft_code try_exponents(const trials *t, weft_error *error)
+{
+    const weft_component_errors *of = t->tried->of_exponent;
+    bool is_better = true;
+    WEFT_TRY(try_number(t, LINEAR, error));
+    for (int i = USUAL + 1; i < WEFT_COMPONENT_EXPONENTS && is_better; i++) {
+        WEFT_TRY(try_number(t, i, error));
+        is_better = measure_of(&of[i], t->for_screen) < worth_an_exponent * measure_of(&of[i - 1], t->for_screen);
+    }
+    bool may_be_smaller = best_exponent(t->tried, t->for_screen) <= USUAL;
+    for (int i = LINEAR + 1; i < USUAL && may_be_smaller; i++)
+        WEFT_TRY(try_number(t, i, error));
     return WEFT_OK;
+}
+
+/* Few views are carried over the light: they do not tell how a highlight moves with the view. */
+static weft_code try_all(trials *t, weft_error *error)
+{
+    weft_component_trial *tried = t->tried;
+    int forms = t->images->view_count < FEW_VIEWS ? 1 : WEFT_COMPONENT_FORMS;
+    WEFT_TRY(try_exponent(t->images, t->some, t->split, t->component_count, exponent_of[USUAL], 0, forms,
+                          tried->of_form, error));
+    t->form = best_form(tried, t->for_screen);
+    tried->image_count = t->split->held_count;
+    tried->of_exponent[USUAL] = tried->of_form[t->form];
+    return try_exponents(t, error);
 }
 
 float weft_component_exponent(int number)
@@ -362,7 +400,14 @@ weft_code weft_component_model_choose(const weft_component_images *images, const
     if (code == WEFT_OK)
         code = weft_training_thin(training, MOST_TEXELS, &some, error);
     if (code == WEFT_OK && s.held_count > 0 && s.fitted.image_count > 0)
-        code = try_all(images, &some, &s, component_count, for_screen, tried, error);
+        code =
+            try_all(&(trials){.images = images,
+                              .some = &some,
+                              .split = &s,
+                              .component_count = component_count < MOST_COMPONENTS ? component_count : MOST_COMPONENTS,
+                              .for_screen = for_screen,
+                              .tried = tried},
+                    error);
     set_form(images, exponent_of[best_exponent(tried, for_screen)], best_form(tried, for_screen), plan);
     weft_training_free(&some);
     split_free(&s);

@@ -20,11 +20,11 @@ static void add_errors(const comparison *c, const float *factor, int texel, cons
                        double *energy)
 {
     const float *vector = c->training->vector + (size_t)texel * c->training->length;
-    const uint8_t *valid = c->training->valid + (size_t)texel * c->training->image_count;
+    const uint8_t *known = c->training->known + (size_t)texel * c->training->image_count;
     size_t length = c->images->length;
     for (size_t i = 0; i < 3 * (size_t)c->images->image_count; i++) {
         float value = 0;
-        if (!valid[i / 3])
+        if (!known[i / 3])
             continue;
         for (size_t k = 0; k < (size_t)c->components->count; k++)
             value += coefficient[k] * factor[k * length + i];
@@ -47,7 +47,7 @@ static weft_code add_near(const comparison *c, double *square, double *energy, w
         float coefficient[WEFT_COMPONENTS_MAX];
         weft_near_projector_move(&projector, c->training->place[texel].x, c->training->place[texel].y);
         code = weft_near_projector_solve(&projector, c->training->vector + (size_t)texel * c->training->length,
-                                         c->training->valid + (size_t)texel * c->training->image_count, coefficient,
+                                         c->training->known + (size_t)texel * c->training->image_count, coefficient,
                                          error);
         if (code == WEFT_OK)
             add_errors(c, projector.factor, texel, coefficient, square, energy);
@@ -65,9 +65,9 @@ static weft_code add_far(const comparison *c, double *square, double *energy, we
     weft_code code = weft_projector_create(&shared.prior, shared.factor, c->images->image_count, &projector, error);
     for (int texel = 0; texel < c->training->texel_count && code == WEFT_OK; texel++) {
         const float *vector = c->training->vector + (size_t)texel * c->training->length;
-        const uint8_t *valid = c->training->valid + (size_t)texel * c->training->image_count;
+        const uint8_t *known = c->training->known + (size_t)texel * c->training->image_count;
         float coefficient[WEFT_COMPONENTS_MAX];
-        code = weft_projector_solve(&projector, &vector, &valid, 1, coefficient, error);
+        code = weft_projector_solve(&projector, &vector, &known, 1, coefficient, error);
         if (code == WEFT_OK)
             add_errors(c, shared.factor, texel, coefficient, square, energy);
     }

@@ -74,14 +74,14 @@ static weft_code choose_far(const weft_component_images *images, const weft_trai
 
 /* What is masked becomes what kriging says of it from the rest: there the weight [A y]_i is 0. Gauss and Seidel's
  * iteration, from the mean texel on. */
-static void fill_series(const weft_kriging *inverse, const uint8_t *valid, const int *image, double *y)
+static void fill_series(const weft_kriging *inverse, const uint8_t *known, const int *image, double *y)
 {
     size_t count = (size_t)inverse->count;
     for (int sweep = 0; sweep < SWEEPS; sweep++)
         for (size_t i = 0; i < count; i++) {
             const double *row = inverse->root + i * count;
             double weight = 0;
-            if (valid[image[i]])
+            if (known[image[i]])
                 continue;
             for (size_t j = 0; j < count; j++)
                 weight += row[j] * y[j];
@@ -98,7 +98,7 @@ static weft_code fill_masked(const weft_training *training, const weft_covarianc
     weft_kriging_invert(&inverse);
 #pragma omp parallel for schedule(dynamic, 8)
     for (int series = 0; series < k->series_count; series++)
-        fill_series(&inverse, training->valid + (size_t)(series / 3) * training->image_count, k->image,
+        fill_series(&inverse, training->known + (size_t)(series / 3) * training->image_count, k->image,
                     k->sample + (size_t)series * (size_t)k->count);
     weft_kriging_free(&inverse);
     return WEFT_OK;
@@ -199,22 +199,29 @@ static weft_code complete_known(const weft_known *k, weft_completion *c, weft_er
     return code;
 }
 
-static weft_code complete_far(const weft_component_images *images, weft_training *training,
-                              const weft_progress *progress, weft_completion *c, weft_error *error)
+static weft_code complete_filled(const weft_component_images *images, const weft_training *training,
+                                 const weft_progress *progress, weft_completion *c, weft_error *error)
 {
     weft_known k;
-    bool masked = weft_training_has_masked(training);
-    if (masked)
-        WEFT_TRY(weft_training_fill_by_mean(training, error));
     WEFT_TRY(choose_far(images, training, progress, c, error));
     WEFT_TRY(weft_known_take(training, images, 0, training->texel_count - 1, MOST_LEARNED, &k, error));
-    weft_code code = masked ? fill_masked(training, &c->covariance, &k, error) : WEFT_OK;
+    weft_code code = weft_training_is_whole(training) ? WEFT_OK : fill_masked(training, &c->covariance, &k, error);
     c->noise = weft_known_mean_square(&k);
     if (code == WEFT_OK)
         code = complete_known(&k, c, error);
     weft_known_free(&k);
-    if (masked)
-        weft_training_clear_masked(training);
+    return code;
+}
+
+static weft_code complete_far(const weft_component_images *images, const weft_training *training,
+                              const weft_progress *progress, weft_completion *c, weft_error *error)
+{
+    weft_training filled;
+    WEFT_TRY(weft_training_thin(training, training->texel_count, &filled, error));
+    weft_code code = weft_training_fill_by_mean(&filled, error);
+    if (code == WEFT_OK)
+        code = complete_filled(images, &filled, progress, c, error);
+    weft_training_free(&filled);
     return code;
 }
 
@@ -327,7 +334,7 @@ static uint64_t bytes_for(const weft_component_images *images, const weft_traini
 }
 
 weft_code weft_completion_make(const weft_dataset_layout *layout, const weft_component_images *images,
-                               weft_training *training, const weft_memory_budget *budget, const char *path,
+                               const weft_training *training, const weft_memory_budget *budget, const char *path,
                                const weft_progress *progress, weft_completion *completion, weft_error *error)
 {
     bool is_near = layout->distance == WEFT_NEAR;

@@ -22,10 +22,10 @@ typedef struct weft_completion {
     double noise;          /* mean square of what is noise in a sample */
 } weft_completion;
 
-/* Learns from at most 1500 of `images` (256 of near ones) and `training`, whose masked samples it fills. Errors:
+/* Learns from at most 1500 of `images` (256 of near ones) and `training`, without clipped samples. Errors:
  * WEFT_BAD_USAGE where `budget` does not suffice, for the dataset `path`; WEFT_BAD_INPUT; WEFT_SYSTEM. */
 weft_code weft_completion_make(const weft_dataset_layout *layout, const weft_component_images *images,
-                               weft_training *training, const weft_memory_budget *budget, const char *path,
+                               const weft_training *training, const weft_memory_budget *budget, const char *path,
                                const weft_progress *progress, weft_completion *completion, weft_error *error);
 void weft_completion_free(weft_completion *completion);
 

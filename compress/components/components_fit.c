@@ -57,6 +57,7 @@ static weft_code learn_from_scattered(fitting *work, weft_components_report *rep
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     weft_completion *completion = &work->completion;
+    weft_training_drop_clipped(&work->training);
     WEFT_TRY(weft_completion_make(layout, &work->images, &work->training, &work->options->budget,
                                   weft_dataset_path(work->dataset), work->progress, completion, error));
     report->scattered = true;
@@ -80,10 +81,10 @@ static weft_code learn(fitting *work, weft_material *material, weft_components_r
     bool scattered = weft_images_are_scattered(layout);
     weft_progress_report(work->progress, "learning components", 0, 2);
     WEFT_TRY(weft_component_images_create(layout, work->options->held_out, &work->images, error));
-    /* Samples of the texels that are learned from, those again that are not held out, and their products. */
+    /* Samples of the texels that are learned from, those again that are not held out, these filled, and products. */
     WEFT_TRY(weft_memory_budget_require(&work->options->budget,
                                         (uint64_t)WEFT_TRAINING_TEXELS *
-                                            (8 * work->images.length + 12 * (uint64_t)WEFT_TRAINING_TEXELS),
+                                            (12 * work->images.length + 12 * (uint64_t)WEFT_TRAINING_TEXELS),
                                         weft_dataset_path(work->dataset), "its components", error));
     WEFT_TRY(weft_training_read(work->dataset, &work->images, &work->training, error));
     WEFT_TRY(scattered ? learn_from_scattered(work, report, error) : learn_from_grid(work, report, error));
@@ -161,7 +162,7 @@ static size_t compare(const fitting *work, const float *factor, weft_vec3 light,
     const weft_training *training = &work->training;
     const float *sample = training->vector + texel * training->length + 3 * (size_t)image;
     float scale = 1 / work->images.weight[image];
-    if (!training->valid[texel * training->image_count + (size_t)image])
+    if (training->known[texel * training->image_count + (size_t)image] != WEFT_SAMPLE_VALID)
         return 0;
     weft_rgb value = weft_components_texel(work->components, work->components->component_count, factor, 0,
                                            training->place[texel].x, training->place[texel].y, light.z);

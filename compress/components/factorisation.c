@@ -52,10 +52,8 @@ static weft_code eigen_create(const weft_training *training, int count, eigen *e
                  .value = malloc(texels * sizeof *e->value),
                  .vector = malloc(texels * wanted * sizeof *e->vector),
                  .support = malloc(2 * wanted * sizeof *e->support)};
-    if (!e->product_row || !e->product || !e->matrix || !e->value || !e->vector || !e->support) {
-        eigen_free(e);
+    if (!e->product_row || !e->product || !e->matrix || !e->value || !e->vector || !e->support)
         return weft_fail_memory(error, "products of texels", texels * texels * sizeof *e->matrix);
-    }
     for (size_t i = 0; i < texels; i++)
         e->product_row[i] = training->vector + i * training->length;
     return WEFT_OK;
@@ -126,33 +124,38 @@ static void read_components(const eigen *e, const weft_training *training, weft_
     factorisation->noise = fmax(e->trace - explained, 1e-9 * e->trace) / (texels * 3 * (double)training->image_count);
 }
 
-/* ---- What is masked ---- */
+/* ---- What is masked or clipped ---- */
 
+/* A clipped channel is as bright as it looks or brighter. */
 static void fill_texel(const weft_factorisation *factorisation, const float *coefficient, size_t images,
-                       const uint8_t *valid, float *vector)
+                       const uint8_t *known, const float *sample, float *filled)
 {
     for (size_t i = 0; i < 3 * images; i++) {
         float value = 0;
-        if (valid[i / 3])
+        bool is_clipped = known[i / 3] & WEFT_SAMPLE_CLIPPED << i % 3;
+        if (known[i / 3] && !is_clipped)
             continue;
         for (size_t k = 0; k < (size_t)factorisation->count; k++)
             value += coefficient[k] * factorisation->vector[k * factorisation->length + i];
-        vector[i] = value;
+        filled[i] = is_clipped ? fmaxf(value, sample[i]) : value;
     }
 }
 
-static weft_code fill_texels(weft_training *training, const weft_factorisation *factorisation,
-                             const weft_projector *projector, weft_error *error)
+/* The coefficients follow from what is known. */
+static weft_code fill_texels(const weft_training *training, const weft_factorisation *factorisation,
+                             const weft_projector *projector, weft_training *filled, weft_error *error)
 {
     weft_code result = WEFT_OK;
 #pragma omp parallel for schedule(dynamic, 8)
     for (int texel = 0; texel < training->texel_count; texel++) {
-        float *vector = training->vector + (size_t)texel * training->length, coefficient[WEFT_COMPONENTS_MAX];
-        const uint8_t *valid = training->valid + (size_t)texel * training->image_count;
+        size_t first = (size_t)texel * training->length;
+        const float *vector = training->vector + first;
+        const uint8_t *known = training->known + (size_t)texel * training->image_count;
+        float coefficient[WEFT_COMPONENTS_MAX];
         weft_error own = {0};
-        weft_code code = weft_projector_solve(projector, (const float *const[]){vector}, &valid, 1, coefficient, &own);
+        weft_code code = weft_projector_solve(projector, &vector, &known, 1, coefficient, &own);
         if (code == WEFT_OK) {
-            fill_texel(factorisation, coefficient, training->image_count, valid, vector);
+            fill_texel(factorisation, coefficient, training->image_count, known, vector, filled->vector + first);
             continue;
         }
 #pragma omp critical(weft_fill_texels)
@@ -164,48 +167,56 @@ static weft_code fill_texels(weft_training *training, const weft_factorisation *
     return result;
 }
 
-static weft_code fill_by_components(weft_training *training, const weft_factorisation *factorisation, weft_error *error)
+static weft_code fill_by_components(const weft_training *training, const weft_factorisation *factorisation,
+                                    weft_training *filled, weft_error *error)
 {
     weft_projector projector;
     WEFT_TRY(
         weft_projector_create(factorisation, factorisation->vector, (int)training->image_count, &projector, error));
-    /* The filled samples are set aside, so that the coefficients follow from the valid ones alone. */
-    weft_training_clear_masked(training);
-    weft_code code = fill_texels(training, factorisation, &projector, error);
+    weft_code code = fill_texels(training, factorisation, &projector, filled, error);
     weft_projector_free(&projector);
     return code;
 }
 
-static weft_code find(weft_training *training, eigen *e, weft_factorisation *factorisation, weft_error *error)
+static weft_code find_once(const weft_training *whole, eigen *e, weft_factorisation *factorisation, weft_error *error)
 {
-    bool masked = weft_training_has_masked(training);
-    if (masked)
-        WEFT_TRY(weft_training_fill_by_mean(training, error));
-    for (int round = 0; round < (masked ? ROUNDS : 1); round++) {
-        if (round > 0)
-            WEFT_TRY(fill_by_components(training, factorisation, error));
-        WEFT_TRY(eigen_solve(e, training, error));
-        read_components(e, training, factorisation);
-    }
-    if (masked)
-        weft_training_clear_masked(training);
+    WEFT_TRY(eigen_solve(e, whole, error));
+    read_components(e, whole, factorisation);
     return WEFT_OK;
 }
 
-weft_code weft_factorisation_find(weft_training *training, int count, weft_factorisation *factorisation,
+static weft_code find(const weft_training *training, weft_factorisation *factorisation, weft_error *error)
+{
+    weft_training filled = {0};
+    eigen e = {0};
+    bool is_whole = weft_training_is_whole(training);
+    weft_code code = is_whole ? WEFT_OK : weft_training_thin(training, training->texel_count, &filled, error);
+    if (code == WEFT_OK && !is_whole)
+        code = weft_training_fill_by_mean(&filled, error);
+    const weft_training *whole = is_whole ? training : &filled;
+    if (code == WEFT_OK)
+        code = eigen_create(whole, factorisation->count, &e, error);
+    if (code == WEFT_OK)
+        code = find_once(whole, &e, factorisation, error);
+    for (int round = 1; round < ROUNDS && !is_whole && code == WEFT_OK; round++) {
+        code = fill_by_components(training, factorisation, &filled, error);
+        if (code == WEFT_OK)
+            code = find_once(&filled, &e, factorisation, error);
+    }
+    eigen_free(&e);
+    weft_training_free(&filled);
+    return code;
+}
+
+weft_code weft_factorisation_find(const weft_training *training, int count, weft_factorisation *factorisation,
                                   weft_error *error)
 {
-    eigen e;
     *factorisation = (weft_factorisation){.count = count, .length = training->length};
     factorisation->vector = aligned_alloc(ALIGNMENT, (size_t)count * training->length * sizeof *factorisation->vector);
     factorisation->variance = malloc((size_t)count * sizeof *factorisation->variance);
     weft_code code = factorisation->vector && factorisation->variance
-                         ? eigen_create(training, count, &e, error)
+                         ? find(training, factorisation, error)
                          : weft_fail_memory(error, "components", (size_t)count * training->length * sizeof(float));
-    if (code == WEFT_OK) {
-        code = find(training, &e, factorisation, error);
-        eigen_free(&e);
-    }
     if (code != WEFT_OK)
         weft_factorisation_free(factorisation);
     return code;

@@ -17,16 +17,17 @@ typedef struct weft_factorisation {
 
 /* Computes `count` components (at most WEFT_COMPONENTS_MAX) by the eigenvectors of the products of the texels with each
  * other (Sirovich 1987). The mean is not taken away: it is the first component. What is masked is filled in meanwhile
- * by what the components say of the rest, a few times over, starting from the mean texel (Beckers and Rixen 2003); in
- * the end it is 0 again. Errors: WEFT_SYSTEM. */
-weft_code weft_factorisation_find(weft_training *training, int count, weft_factorisation *factorisation,
+ * by what the components say of the rest, a few times over, starting from the mean texel (Beckers and Rixen 2003); what
+ * is clipped is at least as bright as it looks. Errors: WEFT_SYSTEM. */
+weft_code weft_factorisation_find(const weft_training *training, int count, weft_factorisation *factorisation,
                                   weft_error *error);
 void weft_factorisation_free(weft_factorisation *factorisation);
 
 /* ---- Coefficients ---- */
 
 /* Finds coefficients of texels for given factors, by least squares with a normal prior:
- *     c = argmin |y - B' c|^2 over the valid samples + sum_k ridge_k c_k^2,  ridge_k = noise / variance_k */
+ *     c = argmin |y - B' c|^2 over the known samples + sum_k ridge_k c_k^2,  ridge_k = noise / variance_k
+ * A clipped channel counts only while less is said of it than it looks. */
 typedef struct weft_projector {
     int count, image_count;
     size_t length;
@@ -61,12 +62,12 @@ void weft_near_projector_free(weft_near_projector *projector);
 void weft_near_projector_move(weft_near_projector *projector, int x, int y);
 
 /* Coefficients of that texel, as weft_projector_solve. Errors: WEFT_SYSTEM. */
-weft_code weft_near_projector_solve(weft_near_projector *projector, const float *vector, const uint8_t *valid,
+weft_code weft_near_projector_solve(weft_near_projector *projector, const float *vector, const uint8_t *known,
                                     float *coefficient, weft_error *error);
 
-/* Coefficients [texel_count][count] of vector [texel_count], masked samples 0, valid [texel_count][image_count]. No
+/* Coefficients [texel_count][count] of vector [texel_count], unknown samples 0, known [texel_count][image_count]. No
  * texel leaves a trace in another. Thread-safe. Errors: WEFT_SYSTEM. */
-weft_code weft_projector_solve(const weft_projector *projector, const float *const *vector, const uint8_t *const *valid,
+weft_code weft_projector_solve(const weft_projector *projector, const float *const *vector, const uint8_t *const *known,
                                int texel_count, float *coefficient, weft_error *error);
 
 #endif

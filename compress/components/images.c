@@ -159,25 +159,47 @@ void weft_component_images_add(weft_component_images *images, const weft_compone
     images->cosine[i] = from->cosine[index];
 }
 
+/* A channel with this share of the brightest channel of a clipped sample may be clipped as well. */
+static const float clipped_share = 0.87f;
+
+/* What a masked sample tells, which goes to rgb. */
+static uint8_t know_masked(const weft_half *sample, uint8_t mask, float rgb[3])
+{
+    unsigned known = 0;
+    if (mask != WEFT_MASK_SATURATED)
+        return 0;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = weft_float_of_half(sample[c]);
+    float brightest = fmaxf(fmaxf(rgb[0], rgb[1]), rgb[2]);
+    bool is_bound = brightest > 0 && fminf(fminf(rgb[0], rgb[1]), rgb[2]) >= 0;
+    for (int c = 0; c < 3 && is_bound; c++)
+        known |= rgb[c] >= clipped_share * brightest ? (unsigned)WEFT_SAMPLE_CLIPPED << c : 0;
+    return (uint8_t)known;
+}
+
 int weft_component_images_gather(const weft_component_images *images, const weft_half *samples, const uint8_t *mask,
-                                 float *scratch, float *vector, uint8_t *valid)
+                                 float *scratch, float *vector, uint8_t *known)
 {
     size_t count = (size_t)images->image_count;
-    const float *known = scratch + 3 * (size_t)images->dataset_image_count;
+    const float *samples_counted = scratch + 3 * (size_t)images->dataset_image_count;
     int valid_count = 0;
     weft_group_of_texel(samples, mask, NULL, (size_t)images->dataset_image_count, scratch);
     memset(vector, 0, images->length * sizeof *vector);
-    memset(valid, 0, count);
+    memset(known, 0, count);
     for (int view = 0; view < images->view_count; view++)
         for (size_t i = images->first[view]; i < images->first[view + 1]; i++) {
             size_t image = (size_t)images->image[i];
-            if (!(known[image] > 0 && images->height[i] > 0 && images->view[view].z > 0))
+            float *rgb = scratch + 3 * image;
+            if (!(images->height[i] > 0 && images->view[view].z > 0))
+                continue;
+            known[i] =
+                samples_counted[image] > 0 ? WEFT_SAMPLE_VALID : know_masked(samples + 3 * image, mask[image], rgb);
+            if (!known[i])
                 continue;
             float factor = images->weight[i] * images->cosine[i];
-            valid[i] = 1;
-            valid_count++;
+            valid_count += known[i] == WEFT_SAMPLE_VALID;
             for (size_t c = 0; c < 3; c++)
-                vector[3 * i + c] = factor * scratch[3 * image + c];
+                vector[3 * i + c] = factor * rgb[c];
         }
     return valid_count;
 }

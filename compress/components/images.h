@@ -40,10 +40,15 @@ void weft_component_images_look_from(const weft_dataset_layout *layout, int x, i
 /* Takes over image `index` of `from`, except for its number in the dataset, which becomes `image`. */
 void weft_component_images_add(weft_component_images *images, const weft_component_images *from, int index, int image);
 
+/* What is known of an image of a texel: nothing (0), its sample, or that its brightest channels are no darker than they
+ * look, because the sensor clipped there. Of a clipped sample bit WEFT_SAMPLE_CLIPPED << channel is set for each of the
+ * channels that may be brighter; the others are as they look. */
+enum { WEFT_SAMPLE_VALID = 1, WEFT_SAMPLE_CLIPPED = 2 };
+
 /* The samples of one texel: samples [dataset image][3] and mask [dataset image] become vector [length], times
- * the weights, and valid [image_count] (1 or 0); what is masked, not finite or below the horizon is 0. `scratch` has 4
- * dataset images. Returns the number of valid images. */
+ * the weights, and known [image_count]; what is not known is 0. `scratch` has 4 dataset images. Returns the number of
+ * valid images. */
 int weft_component_images_gather(const weft_component_images *images, const weft_half *samples, const uint8_t *mask,
-                                 float *scratch, float *vector, uint8_t *valid);
+                                 float *scratch, float *vector, uint8_t *known);
 
 #endif

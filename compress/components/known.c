@@ -69,7 +69,7 @@ static void take_image(const weft_component_images *images, int image, weft_know
 static bool is_seen(const weft_training *training, int first, int last, int image)
 {
     for (int texel = first; texel <= last; texel++) {
-        if (training->valid[(size_t)texel * training->image_count + (size_t)image])
+        if (training->known[(size_t)texel * training->image_count + (size_t)image])
             return true;
     }
     return false;

@@ -10,8 +10,9 @@
 enum {
     MOST_VIEWS = 12,
     MOST_COMPONENTS = 8,
-    NODES = 8, /* at which values of different views are compared, of a square of ... */
-    SIDE = 16, /* ... so many nodes along a side */
+    NODES = 8,             /* at which values of different views are compared, of a square of ... */
+    SIDE = 16,             /* ... so many nodes along a side, which are ... */
+    SIDE_OF_ONE_VIEW = 32, /* ... those of the maps themselves (compress/components/model.c) */
     LENGTHS = 8,
     NUGGETS = 8,
     CANDIDATES = LENGTHS * NUGGETS
@@ -85,6 +86,7 @@ static weft_code add_errors(const left_out *set, const weft_kriged_grid *grid, f
 
 /* What is tried of one length: of half vectors, or of directions. */
 typedef struct square {
+    int side;
     bool of_half_vectors, ordinary;
     float trend;
 } square;
@@ -121,7 +123,7 @@ static weft_code try_candidates(const left_out *set, int set_count, const square
     memset(error_of, 0, LENGTHS * row * sizeof *error_of);
     for (int i = 0; i < LENGTHS; i++) {
         weft_kriged_grid grid;
-        WEFT_TRY(weft_kriged_grid_create(SIDE, of->of_half_vectors, length_of[i], of->trend, &grid, error));
+        WEFT_TRY(weft_kriged_grid_create(of->side, of->of_half_vectors, length_of[i], of->trend, &grid, error));
         weft_code code = try_nuggets(set, set_count, &grid, of->ordinary, error_of + (size_t)i * row, error);
         weft_kriged_grid_free(&grid);
         if (code != WEFT_OK)
@@ -200,9 +202,10 @@ static weft_code choose_inner(const weft_component_images *images, const weft_fa
         code = take_view(images, factorisation, &powers, (int)((long)i * images->view_count / views), tried, &set[i],
                          error);
     if (code == WEFT_OK)
-        code =
-            try_candidates(set, views, &(square){weft_components_are_over_half_vector(plan->kind), false, plan->trend},
-                           error_of, error);
+        code = try_candidates(set, views,
+                              &(square){images->view_count == 1 ? SIDE_OF_ONE_VIEW : SIDE,
+                                        weft_components_are_over_half_vector(plan->kind), false, plan->trend},
+                              error_of, error);
     if (code == WEFT_OK)
         set_lengths(error_of, tried, plan, count, images->view_count == 1);
     for (int i = 0; i < views; i++)
@@ -281,7 +284,7 @@ static weft_code choose_over_views(const weft_component_images *images, const we
     if (code == WEFT_OK)
         code = take_views(images, factorisation, plan, at, error);
     if (code == WEFT_OK)
-        code = try_candidates(at, NODES, &(square){.ordinary = true}, error_of, error);
+        code = try_candidates(at, NODES, &(square){.side = SIDE, .ordinary = true}, error_of, error);
     if (code == WEFT_OK) {
         int best = best_candidate(error_of, (size_t)tried, 0, (size_t)tried);
         plan->view_length = length_of[best / NUGGETS];

@@ -35,7 +35,7 @@ void weft_component_model_factors_alone(const weft_component_maps *maps, const w
                                         float *factor);
 
 /* The forms of maps that are tried: over the light, and over the half vector with two pairs of powers. */
-enum { WEFT_COMPONENT_FORMS = 3, WEFT_COMPONENT_EXPONENTS = 4 };
+enum { WEFT_COMPONENT_FORMS = 3, WEFT_COMPONENT_EXPONENTS = 5 };
 
 /* Relative RMSE of images held out: of linear light, and of what a screen shows. */
 typedef struct weft_component_errors {
@@ -46,16 +46,18 @@ typedef struct weft_component_errors {
 typedef struct weft_component_trial {
     int image_count;                                             /* that were held out; 0: too few to hold any out */
     weft_component_errors of_form[WEFT_COMPONENT_FORMS];         /* with an exponent of 2; 0: not tried */
-    weft_component_errors of_exponent[WEFT_COMPONENT_EXPONENTS]; /* of 1, 1.5, 2 and 2.4, with the best form */
+    weft_component_errors of_exponent[WEFT_COMPONENT_EXPONENTS]; /* with the best form; 0: not tried */
 } weft_component_trial;
 
-/* The exponents that are tried: 1, 1.5, 2 and 2.4. Pure. */
+/* The exponents: 1, 1.5, 2, 2.4 and 3. Pure. */
 float weft_component_exponent(int number);
 
 /* Which plan predicts images best that it has not seen: a tenth of the views and of the lights are held out, and forms
- * and exponents are fitted to the rest of some texels. `training` is linear and as it is read. For the screen that is
- * the exponent of the least error there, among those that leave of linear light at most a twentieth more than the best;
- * else the one of the least error of linear light. Lengths are not chosen yet. Errors: WEFT_SYSTEM. */
+ * and exponents are fitted to the rest of some texels: exponents of 1 and 2, from 2 up as long as the next one is
+ * better, and 1.5 unless a larger one is chosen. `training` is linear and as it is read. For the screen that is the
+ * exponent of the least error there, among those that leave of linear light at most a twentieth more than the best;
+ * else the one of the least error of linear light. A larger exponent must leave 2 % less than a smaller one. Lengths
+ * are not chosen yet. Errors: WEFT_SYSTEM. */
 weft_code weft_component_model_choose(const weft_component_images *images, const weft_training *training,
                                       int component_count, bool for_screen, weft_component_plan *plan,
                                       weft_component_trial *trial, weft_error *error);

@@ -18,7 +18,7 @@ typedef struct worker {
     weft_near_projector near_projector; /* of near images */
     float *vector;                      /* [BATCH][length] */
     float *scratch;                     /* [4 dataset images] */
-    uint8_t *valid;                     /* [BATCH][images] */
+    uint8_t *known;                     /* [BATCH][images] */
     weft_error error;
     weft_code code;
     long masked, empty;
@@ -72,7 +72,7 @@ WEFT_HOT static void find_codes(const weft_component_images *images, const float
 
 /* The reflectance in each channel that all but 2 % of the valid samples reach, rounded down to what weft_floor_of_code
  * gives; 0 where there are too few. */
-static void find_floor(const weft_component_images *images, const float *vector, const uint8_t *valid, float floor[3])
+static void find_floor(const weft_component_images *images, const float *vector, const uint8_t *known, float floor[3])
 {
     int count[3][CODES] = {{0}}, samples = 0;
     size_t all = (size_t)images->image_count;
@@ -81,10 +81,10 @@ static void find_floor(const weft_component_images *images, const float *vector,
         size_t length = all - first < RUN ? all - first : RUN;
         find_codes(images, vector, first, length, code);
         for (size_t i = 0; i < length; i++) {
-            int known = valid[first + i] != 0;
-            samples += known;
+            int is_valid = known[first + i] == WEFT_SAMPLE_VALID;
+            samples += is_valid;
             for (size_t c = 0; c < 3; c++)
-                count[c][code[3 * i + c]] += known;
+                count[c][code[3 * i + c]] += is_valid;
         }
     }
     int below = (int)((long)samples * DARKER_OF_1000 / WHOLE);
@@ -127,12 +127,12 @@ static void gather(const run *r, const weft_component_images *seen, worker *own,
         size_t at = (size_t)first + i, x = at % (size_t)block->place.width, y = at / (size_t)block->place.width;
         float *vector = own->vector + i * r->images->length;
         int valid = weft_component_images_gather(seen, block->samples + 3 * all * at, block->mask + all * at,
-                                                 own->scratch, vector, own->valid + i * images);
+                                                 own->scratch, vector, own->known + i * images);
         own->masked += r->images->image_count - valid;
         own->empty += valid == 0;
         size_t texel = ((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x;
         r->projection->brightest[texel] = brightest(r->images, vector);
-        find_floor(seen, vector, own->valid + i * images, r->projection->floor + 3 * texel);
+        find_floor(seen, vector, own->known + i * images, r->projection->floor + 3 * texel);
         if (r->maps->components->exponent != 1)
             code_samples(r->maps->components->exponent, r->images->weight, images, vector);
     }
@@ -142,13 +142,13 @@ static void gather(const run *r, const weft_component_images *seen, worker *own,
 static weft_code solve_alike(const run *r, worker *own, long first, int count, float *coefficient)
 {
     const float *vector[BATCH] = {0};
-    const uint8_t *valid[BATCH] = {0};
+    const uint8_t *known[BATCH] = {0};
     gather(r, r->images, own, first, count);
     for (size_t i = 0; i < (size_t)count; i++) {
         vector[i] = own->vector + i * r->images->length;
-        valid[i] = own->valid + i * (size_t)r->images->image_count;
+        known[i] = own->known + i * (size_t)r->images->image_count;
     }
-    return weft_projector_solve(r->projector, vector, valid, count, coefficient, &own->error);
+    return weft_projector_solve(r->projector, vector, known, count, coefficient, &own->error);
 }
 
 static weft_code solve_each(const run *r, worker *own, long first, int count, float *coefficient)
@@ -158,7 +158,7 @@ static weft_code solve_each(const run *r, worker *own, long first, int count, fl
         int x = (int)((first + i) % place->width), y = (int)((first + i) / place->width);
         weft_near_projector_move(&own->near_projector, place->x + x, place->y + y);
         gather(r, &own->near_projector.images, own, first + i, 1);
-        WEFT_TRY(weft_near_projector_solve(&own->near_projector, own->vector, own->valid,
+        WEFT_TRY(weft_near_projector_solve(&own->near_projector, own->vector, own->known,
                                            coefficient + i * r->components->count, &own->error));
     }
     return WEFT_OK;
@@ -255,7 +255,7 @@ static void free_workers(run *r)
     for (int i = 0; i < r->thread_count && r->worker; i++) {
         free(r->worker[i].vector);
         free(r->worker[i].scratch);
-        free(r->worker[i].valid);
+        free(r->worker[i].known);
         weft_near_projector_free(&r->worker[i].near_projector);
     }
     free(r->worker);
@@ -269,8 +269,8 @@ static weft_code create_workers(run *r, const weft_dataset_layout *layout, weft_
         worker *own = &r->worker[i];
         own->vector = aligned_alloc(ALIGNMENT, BATCH * r->images->length * sizeof *own->vector);
         own->scratch = malloc(4 * all * sizeof *own->scratch);
-        own->valid = malloc(BATCH * images);
-        if (!own->vector || !own->scratch || !own->valid)
+        own->known = malloc(BATCH * images);
+        if (!own->vector || !own->scratch || !own->known)
             return weft_fail_memory(error, "projection", BATCH * r->images->length * sizeof *own->vector);
         if (!r->projector)
             WEFT_TRY(

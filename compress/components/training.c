@@ -11,7 +11,7 @@ void weft_training_free(weft_training *training)
 {
     free(training->place);
     free(training->vector);
-    free(training->valid);
+    free(training->known);
     *training = (weft_training){0};
 }
 
@@ -22,13 +22,13 @@ weft_code weft_training_allocate(int texels, size_t length, size_t image_count, 
     *training = (weft_training){.texel_count = texels, .length = length, .image_count = image_count};
     training->place = calloc(count, sizeof *training->place);
     training->vector = aligned_alloc(ALIGNMENT, count * length * sizeof *training->vector);
-    training->valid = malloc(count * image_count);
-    if (!training->place || !training->vector || !training->valid) {
+    training->known = malloc(count * image_count);
+    if (!training->place || !training->vector || !training->known) {
         weft_training_free(training);
         return weft_fail_memory(error, "samples to learn components from", count * length * sizeof(float));
     }
     memset(training->vector, 0, count * length * sizeof *training->vector);
-    memset(training->valid, 1, count * image_count);
+    memset(training->known, WEFT_SAMPLE_VALID, count * image_count);
     return WEFT_OK;
 }
 
@@ -77,7 +77,7 @@ static void take_texel(reading *r, int x, int y, size_t at)
     weft_training *t = r->training;
     size_t all = (size_t)r->images->dataset_image_count, index = (size_t)t->texel_count;
     int valid = weft_component_images_gather(r->images, r->samples + 3 * all * at, r->mask + all * at, r->scratch,
-                                             t->vector + index * t->length, t->valid + index * t->image_count);
+                                             t->vector + index * t->length, t->known + index * t->image_count);
     if (valid < r->least)
         return;
     t->place[t->texel_count++] = (weft_training_place){x, y};
@@ -169,7 +169,7 @@ weft_code weft_training_thin(const weft_training *whole, int most, weft_training
         subset->place[i] = whole->place[from];
         memcpy(subset->vector + i * whole->length, whole->vector + from * whole->length,
                whole->length * sizeof *whole->vector);
-        memcpy(subset->valid + i * whole->image_count, whole->valid + from * whole->image_count, whole->image_count);
+        memcpy(subset->known + i * whole->image_count, whole->known + from * whole->image_count, whole->image_count);
     }
     return WEFT_OK;
 }
@@ -183,7 +183,7 @@ weft_code weft_training_subset(const weft_training *whole, const weft_component_
     for (size_t texel = 0; texel < (size_t)whole->texel_count; texel++)
         for (size_t i = 0; i < count; i++) {
             size_t from = (size_t)choice[i];
-            subset->valid[texel * count + i] = whole->valid[texel * whole->image_count + from];
+            subset->known[texel * count + i] = whole->known[texel * whole->image_count + from];
             memcpy(subset->vector + texel * images->length + 3 * i, whole->vector + texel * whole->length + 3 * from,
                    3 * sizeof *subset->vector);
         }
@@ -192,10 +192,13 @@ weft_code weft_training_subset(const weft_training *whole, const weft_component_
 
 /* ---- What is masked ---- */
 
-bool weft_training_has_masked(const weft_training *training)
+bool weft_training_is_whole(const weft_training *training)
 {
     size_t entries = (size_t)training->texel_count * training->image_count;
-    return memchr(training->valid, 0, entries) != NULL;
+    bool is = true;
+    for (size_t i = 0; i < entries; i++)
+        is = is && training->known[i] == WEFT_SAMPLE_VALID;
+    return is;
 }
 
 weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error)
@@ -207,21 +210,21 @@ weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error)
     for (size_t i = 0; i < images; i++) {
         double count = 0;
         for (size_t texel = 0; texel < (size_t)training->texel_count; texel++)
-            count += training->valid[texel * images + i];
+            count += training->known[texel * images + i] != 0;
         for (size_t texel = 0; texel < (size_t)training->texel_count && count > 0; texel++)
             for (size_t c = 0; c < 3; c++)
                 mean[3 * i + c] += (double)training->vector[texel * length + 3 * i + c] / count;
     }
     for (size_t texel = 0; texel < (size_t)training->texel_count; texel++) {
         float *vector = training->vector + texel * length;
-        const uint8_t *valid = training->valid + texel * images;
+        const uint8_t *known = training->known + texel * images;
         double own = 0, others = 1e-30;
         for (size_t i = 0; i < 3 * images; i++) {
-            own += valid[i / 3] ? (double)vector[i] : 0;
-            others += valid[i / 3] ? mean[i] : 0;
+            own += known[i / 3] ? (double)vector[i] : 0;
+            others += known[i / 3] ? mean[i] : 0;
         }
         for (size_t i = 0; i < 3 * images; i++) {
-            if (!valid[i / 3])
+            if (!known[i / 3])
                 vector[i] = (float)(mean[i] * own / others);
         }
     }
@@ -229,11 +232,14 @@ weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error)
     return WEFT_OK;
 }
 
-void weft_training_clear_masked(weft_training *training)
+void weft_training_drop_clipped(weft_training *training)
 {
     for (size_t texel = 0; texel < (size_t)training->texel_count; texel++)
-        for (size_t i = 0; i < 3 * training->image_count; i++) {
-            if (!training->valid[texel * training->image_count + i / 3])
-                training->vector[texel * training->length + i] = 0;
+        for (size_t i = 0; i < training->image_count; i++) {
+            uint8_t *known = &training->known[texel * training->image_count + i];
+            if (*known == WEFT_SAMPLE_VALID)
+                continue;
+            *known = 0;
+            memset(training->vector + texel * training->length + 3 * i, 0, 3 * sizeof *training->vector);
         }
 }

@@ -19,7 +19,7 @@ typedef struct weft_training {
     weft_training_place *place; /* [texel_count] */
     size_t length, image_count;
     float *vector;  /* [texel_count][length] aligned to 64 bytes; 0 where there is no sample */
-    uint8_t *valid; /* [texel_count][image_count] */
+    uint8_t *known; /* [texel_count][image_count] (compress/components/images.h) */
 } weft_training;
 
 /* Reads up to WEFT_TRAINING_TEXELS texels from an even choice of small squares, which lie in few chunks of the file.
@@ -33,13 +33,14 @@ void weft_training_free(weft_training *training);
 weft_code weft_training_allocate(int texels, size_t length, size_t image_count, weft_training *training,
                                  weft_error *error);
 
-bool weft_training_has_masked(const weft_training *training);
+/* Whether every sample is valid. */
+bool weft_training_is_whole(const weft_training *training);
 
-/* What is masked becomes the mean texel over what is valid, brought to the brightness of each. Errors: WEFT_SYSTEM. */
+/* What is masked becomes the mean texel over what is known, brought to the brightness of each. Errors: WEFT_SYSTEM. */
 weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error);
 
-/* What is masked becomes 0 again. */
-void weft_training_clear_masked(weft_training *training);
+/* Clipped samples become unknown ones. */
+void weft_training_drop_clipped(weft_training *training);
 
 /* Samples become coded values: those that give them with an exponent (btf/material/components.h). */
 void weft_training_code(weft_training *training, const weft_component_images *images, float exponent);

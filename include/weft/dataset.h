@@ -31,9 +31,10 @@ typedef enum weft_distance {
 
 /* Why a sample cannot be used (bits); 0 is a valid sample. One with another bit, which only others write, is not. */
 enum {
-    WEFT_MASK_MISSING = 1,   /* no photograph, or its view could not be registered */
-    WEFT_MASK_SATURATED = 2, /* the sensor clipped */
-    WEFT_MASK_DARK = 8       /* too dark to be read: noise, or a few steps of the file, as large as its value */
+    WEFT_MASK_MISSING = 1, /* no photograph, or its view could not be registered */
+    WEFT_MASK_SATURATED =
+        2,             /* the sensor clipped: a sample with this bit alone is a lower bound, 0 where none is known */
+    WEFT_MASK_DARK = 8 /* too dark to be read: noise, or a few steps of the file, as large as its value */
 };
 
 /* Numbers that may be known about every image. */
@@ -146,8 +147,9 @@ typedef struct weft_dataset_writer weft_dataset_writer;
 WEFT_API weft_code weft_dataset_writer_create(const char *path, const weft_dataset_layout *layout,
                                               weft_dataset_writer **result, weft_error *error);
 
-/* samples [height][width][3], mask [height][width] (NULL: all valid); masked samples are stored as 0. May be called
- * from several threads for distinct images. Errors: WEFT_BAD_INPUT for a valid sample that is not finite, WEFT_SYSTEM.
+/* samples [height][width][3], mask [height][width] (NULL: all valid); masked samples are stored as 0, but those that
+ * are WEFT_MASK_SATURATED alone as they are, if they are finite and not negative. May be called from several threads
+ * for distinct images. Errors: WEFT_BAD_INPUT for a valid sample that is not finite, WEFT_SYSTEM.
  */
 WEFT_API weft_code weft_dataset_writer_put_image(weft_dataset_writer *writer, int image, const weft_half *samples,
                                                  const uint8_t *mask, weft_error *error);

@@ -54,9 +54,20 @@ static void fill_masked(const weft_dataset_layout *layout, int x, int y, float *
     for (int i = 0; i < layout->image_count; i++) {
         if ((x + y) % 2 == 0 || (i * 7 + x * 5 + y * 3) % 3 != 0)
             continue;
-        mask[i] = WEFT_MASK_SATURATED;
+        mask[i] = i % 2 ? WEFT_MASK_DARK : WEFT_MASK_SATURATED | WEFT_MASK_MISSING;
         samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = 900;
     }
+}
+
+/* Two thirds of the brightest channel is all that the sensor can tell. */
+static void fill_clipped(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++)
+        for (int c = 0; c < 3; c++) {
+            mask[i] |= samples[3 * i + c] > 0.4f ? WEFT_MASK_SATURATED : 0;
+            samples[3 * i + c] = fminf(samples[3 * i + c], 0.4f);
+        }
 }
 
 /* All but 46 or so of 3721 samples of a texel are masked. */
@@ -64,7 +75,7 @@ static void fill_mostly_masked(const weft_dataset_layout *layout, int x, int y, 
 {
     fill_mixture(layout, x, y, samples, mask);
     for (int i = 0; i < layout->image_count; i++)
-        mask[i] = (i + x + y) % 81 == 0 ? 0 : WEFT_MASK_SATURATED;
+        mask[i] = (i + x + y) % 81 == 0 ? 0 : WEFT_MASK_MISSING;
 }
 
 /* A highlight of another width in every texel, over a dim ground: no few functions say it. */
@@ -277,6 +288,21 @@ static void masked_samples_leave_no_trace(void **state)
     weft_material_free(&material);
 }
 
+static void clipped_samples_are_no_ceiling(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_components();
+    write_dataset(fill_clipped, WEFT_FAR);
+    fit(&options, &material, &report);
+    print_message("%ld clipped: %.4f at samples, %.4f between them\n", report.components.masked,
+                  error_over(&material, measured, 60), error_over(&material, between, 200));
+    assert_true(report.components.masked > 0);
+    assert_true(error_over(&material, between, 200) < 0.025);
+    weft_material_free(&material);
+}
+
 static void what_is_held_out_is_not_seen(void **state)
 {
     (void)state;
@@ -294,7 +320,8 @@ static void what_is_held_out_is_not_seen(void **state)
     weft_material_free(&material);
 }
 
-/* The least error of linear light, and the least on a screen among those that lose at most a twentieth of the other. */
+/* The least error of linear light, and the least on a screen among those that lose at most a twentieth of the other;
+ * both but for the 2 % that a larger exponent must be worth. */
 static void the_measure_chooses_the_exponent(void **state)
 {
     (void)state;
@@ -314,16 +341,16 @@ static void the_measure_chooses_the_exponent(void **state)
     for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++) {
         print_message("exponent %g: linear %.4f, on a screen %.4f\n", (double)weft_component_exponent(i), of[i].linear,
                       of[i].screen);
-        linear = fmin(linear, of[i].linear);
+        linear = of[i].linear > 0 ? fmin(linear, of[i].linear) : linear;
     }
     for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++)
-        if (of[i].linear <= 1.05 * linear)
+        if (of[i].linear > 0 && of[i].linear <= 1.05 * linear)
             shown = fmin(shown, of[i].screen);
     for (int i = 0; i < WEFT_COMPONENT_EXPONENTS; i++) {
         if (weft_component_exponent(i) == screen.components.plan.exponent)
-            assert_true(of[i].screen == shown);
+            assert_true(of[i].screen * 0.96 <= shown);
         if (weft_component_exponent(i) == even.components.plan.exponent)
-            assert_true(even.components.trial.of_exponent[i].linear <= 1.0001 * linear);
+            assert_true(even.components.trial.of_exponent[i].linear * 0.96 <= linear);
     }
     assert_true(of[2].screen < 0.9 * of[0].screen);
 }
@@ -464,7 +491,7 @@ static void fill_ground(const weft_dataset_layout *layout, int x, int y, float *
 {
     fill_mixture(layout, x, y, samples, mask);
     for (int i = 3; i < layout->image_count; i += 10)
-        mask[i] = WEFT_MASK_SATURATED;
+        mask[i] = WEFT_MASK_MISSING;
     for (int i = 0; i < layout->image_count; i++)
         for (int c = 0; c < 3; c++)
             samples[3 * i + c] = i % 1200 == 7 ? 0 : samples[3 * i + c] + (float)(layout->light[i].z * (x >= 8));
@@ -574,6 +601,7 @@ int test_components(void)
         cmocka_unit_test(what_is_all_but_exact_is_rounded_no_finer_than_half_floats),
         cmocka_unit_test(the_growth_of_a_highlight_chooses_the_map),
         cmocka_unit_test(masked_samples_leave_no_trace),
+        cmocka_unit_test(clipped_samples_are_no_ceiling),
         cmocka_unit_test(what_is_held_out_is_not_seen),
         cmocka_unit_test(images_of_small_weight_do_no_harm),
         cmocka_unit_test(the_measure_chooses_the_exponent),

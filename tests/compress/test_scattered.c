@@ -232,7 +232,7 @@ static void fill_masked(const weft_dataset_layout *layout, int x, int y, float *
     for (int i = 0; i < layout->image_count; i++) {
         if ((x + i) % 4 && i != 7)
             continue;
-        mask[i] = i % 2 ? WEFT_MASK_SATURATED : WEFT_MASK_MISSING;
+        mask[i] = i % 2 ? WEFT_MASK_DARK : WEFT_MASK_MISSING;
         samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = 700;
     }
 }

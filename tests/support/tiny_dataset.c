@@ -42,7 +42,7 @@ uint8_t tiny_distinct(const weft_dataset_layout *layout, int image, int x, int y
     int number = (y * layout->width + x) * layout->image_count + image;
     for (int channel = 0; channel < 3; channel++)
         rgb[channel] = (float)(1 + (3 * number + channel) % 2039) / 16;
-    return number % 7 == 6 ? WEFT_MASK_SATURATED : 0;
+    return number % 7 != 6 ? 0 : number % 2 ? WEFT_MASK_DARK : WEFT_MASK_SATURATED;
 }
 
 void tiny_image(const weft_dataset_layout *layout, tiny_sample *sample, int image, weft_half *samples, uint8_t *mask)
