@@ -26,8 +26,9 @@ assert "opacity" not in f and json.loads(f["provenance"][()]) == {}
 number = np.arange(HEIGHT * WIDTH * IMAGES).reshape(HEIGHT, WIDTH, IMAGES)
 masked = number % 7 == 6
 value = (1 + (3 * number[..., None] + np.arange(3)) % 2039) / 16
-assert np.array_equal(f["mask"][:], np.where(masked, 2, 0))
-assert np.array_equal(f["samples"][:], np.where(masked[..., None], 0, value).astype(np.float16))
+dark = masked & (number % 2 == 1)
+assert np.array_equal(f["mask"][:], np.where(dark, 8, np.where(masked, 2, 0)))
+assert np.array_equal(f["samples"][:], np.where(dark[..., None], 0, value).astype(np.float16))
 assert np.array_equal(f["view_of_image"][:], np.arange(IMAGES) // LIGHTS)
 assert np.allclose(f["light"][0], [0, 0, 1]) and np.allclose(f["light"][1], [np.sin(np.pi / 12), 0, np.cos(np.pi / 12)])
 print(f["samples"], "agrees")
