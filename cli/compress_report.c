@@ -125,6 +125,30 @@ static void report_plan(const weft_common_options *common, const weft_compress_o
                      components->training_texels, chosen);
 }
 
+/* What the outermost ring says of what lies beyond it. */
+static void report_outermost(const weft_common_options *common, const weft_component_trial *trial)
+{
+    static const char *const kind[] = {"views", "lights", "both"};
+    char list[120] = "", event[240];
+    size_t used = 0;
+    for (int i = 0; i < 3; i++) {
+        if (trial->of_outermost[i].linear > 0)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%.0f %% (%s)", used > 0 ? ", " : "",
+                                     100 * trial->of_outermost[i].linear, kind[i]);
+    }
+    if (used == 0)
+        return;
+    weft_command_say(common,
+                     "beyond the photographs: relative RMSE %s; measured with directions of %.0f degrees and more left "
+                     "out",
+                     list, trial->outermost_deg);
+    snprintf(event, sizeof event,
+             "{\"event\":\"outermost\",\"from_deg\":%.1f,\"view\":%.4g,\"light\":%.4g,\"both\":%.4g}",
+             trial->outermost_deg, trial->of_outermost[0].linear, trial->of_outermost[1].linear,
+             trial->of_outermost[2].linear);
+    weft_command_event(common, event);
+}
+
 static void report_scattered(const weft_common_options *common, const weft_compress_options *options,
                              const weft_components_report *components)
 {
@@ -151,6 +175,7 @@ static void report_components(const weft_common_options *common, const weft_comp
         report_scattered(common, options, components);
     else
         report_plan(common, options, components);
+    report_outermost(common, &components->trial);
     weft_command_say(
         common,
         "components at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "

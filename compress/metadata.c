@@ -56,8 +56,8 @@ static void append_errors(json_t **list, const weft_component_errors *errors)
     weft_json_append(list, json_pack("[f, f]", errors->linear, errors->screen));
 }
 
-/* Errors of linear light and on a screen of three forms and of all exponents; those that were not tried are 0. Scattered
- * images try two maps. */
+/* Errors of linear light and on a screen of three forms and of all exponents; those that were not tried are 0.
+ * Scattered images try two maps. */
 static json_t *list_trials(const weft_components_report *report)
 {
     json_t *trials = json_array();
@@ -68,6 +68,14 @@ static json_t *list_trials(const weft_components_report *report)
     for (int exponent = 0; exponent < WEFT_COMPONENT_EXPONENTS && !report->scattered; exponent++)
         append_errors(&trials, &report->trial.of_exponent[exponent]);
     return trials;
+}
+
+/* Relative RMSE of the outermost views, lights, and of both; 0: there are none. */
+static json_t *describe_outermost(const weft_component_trial *trial)
+{
+    const weft_component_errors *of = trial->of_outermost;
+    return json_pack("{s:f, s:f, s:f, s:f}", "from_deg", trial->outermost_deg, "view", of[0].linear, "light",
+                     of[1].linear, "both", of[2].linear);
 }
 
 static json_t *describe_components(const weft_compress_options *options, const weft_components_report *report)
@@ -81,6 +89,8 @@ static json_t *describe_components(const weft_compress_options *options, const w
         "trial_relative_rmse", list_trials(report), "learned_from_texels", report->training_texels, "fitted",
         "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative, "rmse",
         fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
+    if (report->trial.outermost_deg > 0)
+        weft_json_put(&components, "outermost", describe_outermost(&report->trial));
     if (report->scattered)
         weft_json_put(&components, "kriging", describe_kriging(report));
     return components;

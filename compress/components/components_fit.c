@@ -47,6 +47,9 @@ static weft_code learn_from_grid(fitting *work, weft_components_report *report, 
     int count = work->options->component_count;
     WEFT_TRY(weft_component_model_choose(&work->images, &work->training, count, work->options->for_screen,
                                          &report->plan, &report->trial, error));
+    if (!work->options->held_out)
+        WEFT_TRY(weft_component_model_try_outermost(&work->images, &work->training, count, &report->plan,
+                                                    &report->trial, error));
     weft_progress_report(work->progress, "learning components", 1, 2);
     weft_training_code(&work->training, &work->images, report->plan.exponent);
     WEFT_TRY(weft_factorisation_find(&work->training, count, &work->factorisation, error));

@@ -47,6 +47,8 @@ typedef struct weft_component_trial {
     int image_count;                                             /* that were held out; 0: too few to hold any out */
     weft_component_errors of_form[WEFT_COMPONENT_FORMS];         /* with an exponent of 2; 0: not tried */
     weft_component_errors of_exponent[WEFT_COMPONENT_EXPONENTS]; /* with the best form; 0: not tried */
+    double outermost_deg;                  /* the outermost views and lights are so far from the normal; 0: not tried */
+    weft_component_errors of_outermost[3]; /* of their images: the view, the light, or both are such; 0: none */
 } weft_component_trial;
 
 /* The exponents: 1, 1.5, 2, 2.4 and 3. Pure. */
@@ -61,6 +63,12 @@ float weft_component_exponent(int number);
 weft_code weft_component_model_choose(const weft_component_images *images, const weft_training *training,
                                       int component_count, bool for_screen, weft_component_plan *plan,
                                       weft_component_trial *trial, weft_error *error);
+
+/* What a plan says of the outermost views and lights when only what lies inside them is fitted: how wrong a material
+ * may be beyond the directions of its images. Errors: WEFT_SYSTEM. */
+weft_code weft_component_model_try_outermost(const weft_component_images *images, const weft_training *training,
+                                             int component_count, const weft_component_plan *plan,
+                                             weft_component_trial *trial, weft_error *error);
 
 /* Lengths, nuggets and trend of a plan, by leaving values of the components out. Errors: WEFT_SYSTEM. */
 weft_code weft_component_model_choose_lengths(const weft_component_images *images,

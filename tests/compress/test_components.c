@@ -303,6 +303,47 @@ static void clipped_samples_are_no_ceiling(void **state)
     weft_material_free(&material);
 }
 
+/* The mixture, but lights of the outermost ring are twice as bright, and its views three times. */
+static double outside;
+
+static void fill_ring(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++) {
+        weft_vec3 light = layout->light[i], view = layout->view[layout->view_of_image[i]];
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] *= (light.z < outside ? 2.0f : 1) * (view.z < outside ? 3.0f : 1);
+    }
+}
+
+/* 1 - 1 / 3, 1 - 1 / 2 and 1 - 1 / 6 of them are not foreseen, while nothing inside is told of it. */
+static void the_outermost_ring_stands_for_what_lies_beyond(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_components();
+    const weft_component_trial *trial = &report.components.trial;
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, &report);
+    weft_material_free(&material);
+    double before = trial->of_form[0].linear;
+    outside = cos(trial->outermost_deg * WEFT_PI / 180);
+    print_message("from %.1f degrees on: %.3f %.3f %.3f\n", trial->outermost_deg, trial->of_outermost[0].linear,
+                  trial->of_outermost[1].linear, trial->of_outermost[2].linear);
+    for (int kind = 0; kind < 3; kind++)
+        assert_true(trial->of_outermost[kind].linear > 0 && trial->of_outermost[kind].linear < 0.4);
+    write_dataset(fill_ring, WEFT_FAR);
+    fit(&options, &material, &report);
+    weft_material_free(&material);
+    print_message("changed: %.3f %.3f %.3f\n", trial->of_outermost[0].linear, trial->of_outermost[1].linear,
+                  trial->of_outermost[2].linear);
+    assert_float_equal(trial->of_outermost[0].linear, 2.0 / 3, 0.1);
+    assert_float_equal(trial->of_outermost[1].linear, 1.0 / 2, 0.1);
+    assert_float_equal(trial->of_outermost[2].linear, 5.0 / 6, 0.1);
+    assert_true(trial->of_form[0].linear > before);
+}
+
 static void what_is_held_out_is_not_seen(void **state)
 {
     (void)state;
@@ -602,6 +643,7 @@ int test_components(void)
         cmocka_unit_test(the_growth_of_a_highlight_chooses_the_map),
         cmocka_unit_test(masked_samples_leave_no_trace),
         cmocka_unit_test(clipped_samples_are_no_ceiling),
+        cmocka_unit_test(the_outermost_ring_stands_for_what_lies_beyond),
         cmocka_unit_test(what_is_held_out_is_not_seen),
         cmocka_unit_test(images_of_small_weight_do_no_harm),
         cmocka_unit_test(the_measure_chooses_the_exponent),
