@@ -115,7 +115,7 @@ static void a_preset_predicts_size_and_error(void **state)
     (void)state;
     weft_dataset *dataset;
     weft_error error = {0};
-    fixture_far_dataset(path, 10, 9, 4, noisy, FIXTURE_MASK_NONE);
+    fixture_far_dataset(path, 10, 9, 3, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     weft_compress_options options = weft_compress_default_options();
     weft_prediction prediction;
@@ -173,7 +173,7 @@ static void components_are_chosen_by_size(void **state)
     (void)state;
     weft_dataset *dataset;
     weft_error error = {0};
-    fixture_far_dataset(path, 16, 12, 4, noisy, FIXTURE_MASK_NONE);
+    fixture_far_dataset(path, 16, 12, 3, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     weft_compress_options options = weft_compress_default_options();
     weft_component_count of_size;
