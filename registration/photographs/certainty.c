@@ -205,13 +205,14 @@ weft_code weft_photographs_check_light(const char *folder, const weft_photograph
     if (set->lamps.ball_misfit > most_misfit)
         WEFT_TRY(weft_photographs_contradict(
             folder, settings, set, error,
-            "the highlights on the balls lie %.0f standard errors off, median: check --opening and "
-            "--balls",
+            "the highlights on the balls lie %.0f standard errors off, median: the sheet was printed at another scale "
+            "than 100 %%, or --opening or --balls is wrong",
             set->lamps.ball_misfit));
     if (set->lamps.pin_misfit > most_misfit)
         return weft_photographs_contradict(
             folder, settings, set, error,
-            "the shadows of the pin lie %.0f standard errors off, median: check --opening and --pin",
+            "the shadows of the pin lie %.0f standard errors off, median: the sheet was printed at another scale than "
+            "100 %%, or --opening or --pin is wrong",
             set->lamps.pin_misfit);
     return WEFT_OK;
 }

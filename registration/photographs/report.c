@@ -20,11 +20,10 @@ void weft_photographs_describe_tone(const weft_photograph_set *set, char words[W
     if (set->pair_count > 0)
         length += snprintf(words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
                            ", and in %d pairs of photographs that differ in exposure alone", set->pair_count);
-    snprintf(
-        words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
-        "; the light of a tenth of white paper is known to %.1f %% (standard error); ink reflects %.3f of the paper, "
-        "known to %.0f %%",
-        100 * set->lamps.dark_error, set->lamps.ink, 100 * set->lamps.ink_error);
+    snprintf(words + length, WEFT_PHOTOGRAPHS_TEXT_SIZE - (size_t)length,
+             "; the light of a tenth of white paper is known to %.1f %%, ink, %.3f of the paper, to %.0f %% (standard "
+             "errors)",
+             100 * set->lamps.dark_error, set->lamps.ink, 100 * set->lamps.ink_error);
 }
 
 void weft_photographs_describe_masks(const weft_photograph_set *set, const weft_photographs_settings *settings,

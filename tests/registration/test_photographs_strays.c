@@ -217,6 +217,23 @@ static void a_bowed_sheet_is_found_with_the_lens(void **state)
     }
 }
 
+static void a_bow_is_found_under_a_lens_that_is_known(void **state)
+{
+    (void)state;
+    weft_target target = weft_target_printed(opening_mm);
+    weft_photographs_photograph photograph[PHOTOGRAPHS];
+    weft_lens_estimate lens;
+    weft_error error = {0};
+    for (int i = 0; i < PHOTOGRAPHS; i++)
+        photograph[i] = photograph_of(&camera, i, arched, 1);
+    expect_ok(weft_lens_estimate_from(photograph, PHOTOGRAPHS, WIDTH, HEIGHT, &camera, &lens, &error), &error);
+    assert_near(weft_lens_bow_mm(&lens.bend, &target), 1, 0.1);
+    assert_true(lens.camera.fx == camera.fx && lens.distinct_views >= 4);
+    assert_true(lens.errors.focal_px == 0 && lens.bend_error_mm > 0);
+    for (int i = 0; i < PHOTOGRAPHS; i++)
+        assert_true(photograph[i].corner_rms_px < 2 * scatter_px);
+}
+
 /* What scatters, and what the lens has beyond k1 and k2, makes no bow. */
 static void a_flat_sheet_is_called_flat(void **state)
 {
@@ -437,6 +454,7 @@ int test_photographs_strays(void)
         cmocka_unit_test(a_bent_sheet_and_another_zoom_are_left_out),
         cmocka_unit_test(most_corners_of_a_gently_bent_sheet_stay_or_none_count),
         cmocka_unit_test(a_bowed_sheet_is_found_with_the_lens),
+        cmocka_unit_test(a_bow_is_found_under_a_lens_that_is_known),
         cmocka_unit_test(a_flat_sheet_is_called_flat),
         cmocka_unit_test(photographs_of_two_lenses_are_parted),
         cmocka_unit_test(a_tripod_states_what_an_assumed_lens_costs),
