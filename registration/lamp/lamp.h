@@ -67,6 +67,8 @@ typedef struct weft_lamp_solution {
     double ink;                     /* reflectance of ink over that of paper */
     double ink_error;               /* its standard error, relative */
     double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
+    double size, size_error;        /* of balls and pin over what is told, with the relative standard error of that; 1
+                                       and 0 where none is seen */
     double dark_error;              /* standard error of the tone curve, relative: of light of a tenth of the paper's; 0
                                        where the curve is known */
     weft_flash flash;               /* with a beam of zeros where the lamp is none */

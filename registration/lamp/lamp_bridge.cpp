@@ -67,6 +67,7 @@ class lamp_search : lamp_terms
         find_uncertainties();
         write_shared();
         find_misfits();
+        find_size();
         return WEFT_OK;
     }
 
@@ -172,6 +173,25 @@ class lamp_search : lamp_terms
         return 1.4826 * median(off);
     }
 
+    /* Of balls and pin over what is told, with all else free, once everything else is written. */
+    void find_size()
+    {
+        ceres::Covariance covariance{ceres::Covariance::Options()};
+        const std::vector<std::pair<const double *, const double *>> wanted{{&shared.size, &shared.size}};
+        double variance;
+        output->size = 1, output->size_error = 0;
+        if (!terms.problem.HasParameterBlock(&shared.size))
+            return;
+        terms.problem.SetParameterBlockVariable(&shared.size);
+        if (minimise(terms, nullptr) != WEFT_OK)
+            return;
+        output->size = std::exp(shared.size);
+        output->size_error = 1;
+        if (covariance.Compute(wanted, &terms.problem) &&
+            covariance.GetCovarianceBlock(&shared.size, &shared.size, &variance))
+            output->size_error = std::sqrt(std::max(0.0, variance));
+    }
+
     static double median(std::vector<double> &value)
     {
         if (value.empty())
@@ -186,11 +206,12 @@ class lamp_search : lamp_terms
         std::vector<double> balls, shadows;
         double r[3];
         for (const highlight_seen &seen : highlights)
-            balls.push_back((*seen.residual)(lamp_of(seen.photograph), shared.shift[seen.ball], r)
+            balls.push_back((*seen.residual)(lamp_of(seen.photograph), shared.shift[seen.ball], &shared.size, r)
                                 ? std::hypot(r[0], r[1], r[2])
                                 : HUGE_VAL);
         for (const auto &[residual, i] : pins)
-            shadows.push_back((*residual)(lamp_of(i), shared.pin_shift, r) ? std::hypot(r[0], r[1]) : HUGE_VAL);
+            shadows.push_back((*residual)(lamp_of(i), shared.pin_shift, &shared.size, r) ? std::hypot(r[0], r[1])
+                                                                                         : HUGE_VAL);
         output->ball_misfit = median(balls);
         output->pin_misfit = median(shadows);
     }

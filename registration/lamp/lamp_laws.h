@@ -25,7 +25,8 @@ constexpr double sheet_slope = 0.01;
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
  * place, the head of the pin within half of one; ink within a fifth. */
 constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, pin_deviation_mm = 0.5;
-constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
+constexpr double size_deviation = 0.1, power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2,
+                 flash_deviation_mm = 60;
 
 /* Ink shines: where it mirrors the lamp it reflects 1 + shine of what it does elsewhere; tangent of the angle from
  * there at which the shine has fallen to 1 / e. A lamp in the hand has a beam, cos^power about the place that it is
@@ -169,16 +170,18 @@ struct highlight_residual {
     vec3 eye, ray, touch; /* in units; `touch` is where the ball touches the sheet by the drawing */
     double radius, deviation_rad;
 
-    template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
+    /* `size`: logarithm of that of balls and pin over what is told. */
+    template <typename T> bool operator()(const T *unknown, const T *shift, const T *size, T *residual) const
     {
-        const T centre[3] = {touch[0] + shift[0], touch[1] + shift[1], T(touch[2] + radius)};
+        const T ball = radius * exp(size[0]);
+        const T centre[3] = {touch[0] + shift[0], touch[1] + shift[1], touch[2] + ball};
         T offset[3], half = T(0), square = T(0);
         for (int i = 0; i < 3; i++) {
             offset[i] = eye[i] - centre[i];
             half += offset[i] * ray[i];
             square += offset[i] * offset[i];
         }
-        const T under = half * half - square + radius * radius;
+        const T under = half * half - square + ball * ball;
         if (under <= T(1e-9)) /* the ray passes the ball */
             return false;
         const T along = -half - sqrt(under);
@@ -186,7 +189,7 @@ struct highlight_residual {
         mount.place(unknown, lamp);
         for (int i = 0; i < 3; i++) {
             point[i] = eye[i] + ray[i] * along;
-            normal[i] = (point[i] - centre[i]) / radius;
+            normal[i] = (point[i] - centre[i]) / ball;
             normal_part += ray[i] * normal[i];
             to[i] = lamp[i] - point[i];
             length += to[i] * to[i];
@@ -207,14 +210,15 @@ struct highlight_residual {
  * across it, which errs less. */
 struct pin_residual {
     mounting mount;
-    vec3 head; /* by the drawing */
+    vec3 head; /* by the drawing, and its height over the ground */
+    double ground;
     double shadow[3], along[2], along_deviation, across_deviation;
 
-    template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
+    template <typename T> bool operator()(const T *unknown, const T *shift, const T *size, T *residual) const
     {
         T lamp[3], off[2];
         mount.place(unknown, lamp);
-        const T height = head[2] + shift[2], above = lamp[2] - height;
+        const T height = ground + head[2] * exp(size[0]) + shift[2], above = lamp[2] - height;
         if (above <= T(0.05))
             return false;
         for (int axis = 0; axis < 2; axis++) {

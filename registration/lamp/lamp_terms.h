@@ -21,7 +21,7 @@ struct photograph_unknowns {
 /* Unknowns that all photographs share. Of ink: logarithm of its reflectance over that of paper, shine, and the
  * logarithm of its width. Of the beam of a lamp that is not fixed to the camera: the power alone. */
 struct shared_unknowns {
-    double tone[WEFT_TONE_TERMS], vignetting[2], ink[3], power, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3],
+    double tone[WEFT_TONE_TERMS], vignetting[2], ink[3], power, size, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3],
         flash[3], beam[WEFT_BEAM_TERMS];
 };
 
@@ -205,10 +205,11 @@ class lamp_terms
                                                  input->ball_diameter_mm / 2 / unit_mm,
                                                  seen.deviation_rad};
             double vanishing[3];
-            if (!residual(lamp_of(i), shared.shift[ball], vanishing))
+            if (!residual(lamp_of(i), shared.shift[ball], &shared.size, vanishing))
                 continue;
             highlights.push_back(
-                {terms.add<3, 3, 2>(residual, terms.cauchy(3), lamp_of(i), shared.shift[ball]), i, ball});
+                {terms.add<3, 3, 2, 1>(residual, terms.cauchy(3), lamp_of(i), shared.shift[ball], &shared.size), i,
+                 ball});
         }
     }
 
@@ -220,17 +221,19 @@ class lamp_terms
         double foot[2];
         weft_target_pin(input->target, foot);
         const double ux = seen.place[0] - foot[0], uy = seen.place[1] - foot[1], length = std::hypot(ux, uy);
-        const pin_residual residual = {mount_of(i),
-                                       {foot[0] / unit_mm, foot[1] / unit_mm,
-                                        height_at(foot) + (input->pin_height_mm - weft_pin_head_radius_mm) / unit_mm},
-                                       {seen.place[0] / unit_mm, seen.place[1] / unit_mm, height_at(seen.place)},
-                                       {ux / length, uy / length},
-                                       seen.along_mm / unit_mm,
-                                       seen.across_mm / unit_mm};
+        const pin_residual residual = {
+            mount_of(i),
+            {foot[0] / unit_mm, foot[1] / unit_mm, (input->pin_height_mm - weft_pin_head_radius_mm) / unit_mm},
+            height_at(foot),
+            {seen.place[0] / unit_mm, seen.place[1] / unit_mm, height_at(seen.place)},
+            {ux / length, uy / length},
+            seen.along_mm / unit_mm,
+            seen.across_mm / unit_mm};
         double vanishing[2];
-        if (!residual(lamp_of(i), shared.pin_shift, vanishing))
+        if (!residual(lamp_of(i), shared.pin_shift, &shared.size, vanishing))
             return;
-        pins.emplace_back(terms.add<2, 3, 3>(residual, terms.cauchy(3), lamp_of(i), shared.pin_shift), i);
+        pins.emplace_back(terms.add<2, 3, 3, 1>(residual, terms.cauchy(3), lamp_of(i), shared.pin_shift, &shared.size),
+                          i);
     }
 
     void add_listed(int i)
@@ -287,6 +290,9 @@ class lamp_terms
             terms.prior<2>(shift, {shift_deviation_mm / unit_mm, shift_deviation_mm / unit_mm});
         const double pin = pin_deviation_mm / unit_mm, flash = flash_deviation_mm / unit_mm;
         terms.prior<3>(shared.pin_shift, {pin, pin, pin});
+        if (terms.problem.HasParameterBlock(&shared.size))
+            terms.prior<1>(&shared.size, {size_deviation});
+        hold(&shared.size);
         if (input->flash) {
             terms.prior(shared.beam, beam_deviation);
             terms.prior<3>(shared.flash, {flash, flash, flash});

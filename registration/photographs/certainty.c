@@ -185,7 +185,7 @@ weft_code weft_photographs_check_light(const char *folder, const weft_photograph
                                        weft_photograph_set *set, weft_error *error)
 {
     /* Printers' ink reflects 0.05 of 0.85, within a factor of 2. Paper is smooth to a hundredth. */
-    const double most_factor = 2, most_residual = 0.04, most_misfit = 4;
+    const double most_factor = 2, most_residual = 0.04, most_misfit = 4, least_scale = 0.02;
     const weft_target *target = &settings->target;
     double usual = target->ink_reflectance / target->paper_reflectance, off = median_residual(set);
     if (set->lamps.ink > most_factor * usual || set->lamps.ink < usual / most_factor)
@@ -202,6 +202,13 @@ weft_code weft_photographs_check_light(const char *folder, const weft_photograph
             "the light on the bare paper is %.0f %% off that of a lamp (median): one small lamp must "
             "light the sheet in a dark room, and --flash says that it is fixed to the camera",
             100 * off));
+    if (set->lamps.size_error > 0 &&
+        fabs(log(set->lamps.size)) > fmax(least_scale, most_misfit * set->lamps.size_error))
+        WEFT_TRY(weft_photographs_contradict(folder, settings, set, error,
+                                             "balls and pin come out as %.3f of the size that is told: the sheet was "
+                                             "not printed at 100 %%, and --opening "
+                                             "is %.4g, or --balls or --pin is wrong",
+                                             set->lamps.size, target->opening_mm / set->lamps.size));
     if (set->lamps.ball_misfit > most_misfit)
         WEFT_TRY(weft_photographs_contradict(
             folder, settings, set, error,

@@ -139,14 +139,16 @@ static void light_that_contradicts_itself_is_refused(void **state)
     weft_photographs_settings settings = weft_photographs_defaults();
     const double usual = settings.target.ink_reflectance / settings.target.paper_reflectance;
     const struct {
-        double ink, residual, ball_misfit, pin_misfit;
+        double ink, residual, ball_misfit, pin_misfit, size, size_error;
         const char *names;
-    } light[] = {{usual, 0.01, 1, 1, NULL},
-                 {0.71, 0.01, 1, 1, "the ink comes out as 0.710 of the paper"},
-                 {0.4 * usual, 0.01, 1, 1, "the ink comes out as 0.024 of the paper"},
-                 {usual, 0.1, 1, 1, "bare paper is 10 % off"},
-                 {usual, 0.01, 6, 1, "highlights on the balls lie 6"},
-                 {usual, 0.01, 1, 6, "shadows of the pin lie 6"}};
+    } light[] = {{usual, 0.01, 1, 1, 1, 0, NULL},
+                 {usual, 0.01, 1, 1, 1.05, 0.02, NULL},
+                 {usual, 0.01, 1, 1, 1.05, 0.01, "not printed at 100 %, and --opening is 47.6"},
+                 {0.71, 0.01, 1, 1, 1, 0, "the ink comes out as 0.710 of the paper"},
+                 {0.4 * usual, 0.01, 1, 1, 1, 0, "the ink comes out as 0.024 of the paper"},
+                 {usual, 0.1, 1, 1, 1, 0, "bare paper is 10 % off"},
+                 {usual, 0.01, 6, 1, 1, 0, "highlights on the balls lie 6"},
+                 {usual, 0.01, 1, 6, 1, 0, "shadows of the pin lie 6"}};
     for (size_t i = 0; i < sizeof light / sizeof *light; i++) {
         weft_photographs_photograph photograph = {.name = "a", .lamp = {.residual = light[i].residual}};
         weft_photograph_set set = {.count = 1, .photograph = &photograph, .tone_found = true};
@@ -154,6 +156,8 @@ static void light_that_contradicts_itself_is_refused(void **state)
         set.lamps.ink = light[i].ink;
         set.lamps.ball_misfit = light[i].ball_misfit;
         set.lamps.pin_misfit = light[i].pin_misfit;
+        set.lamps.size = light[i].size;
+        set.lamps.size_error = light[i].size_error;
         settings.force = false;
         weft_code code = weft_photographs_check_light("felt", &settings, &set, &error);
         assert_int_equal(code == WEFT_OK, !light[i].names);

@@ -147,6 +147,55 @@ static weft_vec3 low_highlight(const weft_lamp_problem *problem, weft_vec3 eye)
     return eye;
 }
 
+/* The ray towards the highlight of a lamp on a ball: its normal halves the angle between lamp and camera. */
+static weft_highlight highlight_of(const weft_target *target, int ball, double diameter_mm, weft_vec3 lamp,
+                                   weft_vec3 eye)
+{
+    double foot[2];
+    weft_target_ball(target, ball, foot);
+    weft_vec3 centre = weft_vec3_of(foot[0], foot[1], diameter_mm / 2), at = centre;
+    for (int i = 0; i < 50; i++) {
+        weft_vec3 to_lamp = weft_unit(weft_subtract(lamp, at)), to_eye = weft_unit(weft_subtract(eye, at));
+        at = weft_add(centre, weft_scale(weft_unit(weft_add(to_lamp, to_eye)), diameter_mm / 2));
+    }
+    return (weft_highlight){.found = true, .ray = weft_unit(weft_subtract(at, eye)), .deviation_rad = 0.01};
+}
+
+/* A sheet that is printed smaller than it should be makes balls and pin larger than they should be. */
+static void the_size_of_balls_and_pin_tells_the_scale_of_the_print(void **state)
+{
+    (void)state;
+    for (int smaller = 0; smaller < 2; smaller++) {
+        scene *s = photograph_all();
+        weft_lamp_place place[PHOTOGRAPHS];
+        weft_lamp_solution found = {.place = place};
+        weft_lamp_problem problem = problem_of(s, PHOTOGRAPHS);
+        weft_error error = {0};
+        double scale = smaller ? 1 / 0.94 : 1, foot[2];
+        problem.ball_diameter_mm = 20;
+        problem.pin_height_mm = 30;
+        weft_target_pin(problem.target, foot);
+        for (int i = 0; i < PHOTOGRAPHS; i++) {
+            weft_lamp_evidence *seen = &s->evidence[i];
+            weft_vec3 eye = weft_pose_camera_position(&seen->pose);
+            weft_vec3 head = weft_vec3_of(foot[0], foot[1], scale * (30 - weft_pin_head_radius_mm));
+            weft_vec3 down = weft_subtract(head, s->lamp[i]);
+            for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++)
+                seen->highlight[ball] = highlight_of(problem.target, ball, 20 * scale, s->lamp[i], eye);
+            seen->pin = (weft_pin_shadow){.found = true, .along_mm = 0.3, .across_mm = 0.2};
+            seen->pin.place[0] = head.x - down.x / down.z * head.z;
+            seen->pin.place[1] = head.y - down.y / down.z * head.z;
+        }
+        weft_lamp_guess(&problem, &found);
+        assert_int_equal(weft_lamp_solve(&problem, &found, &error), WEFT_OK);
+        print_message("balls and pin: %.3f +- %.3f of their size, %.3f in truth; misfits %.1f, %.1f\n", found.size,
+                      found.size_error, scale, found.ball_misfit, found.pin_misfit);
+        assert_near(found.size, scale, 0.015);
+        assert_true(found.size_error > 0 && found.size_error < 0.012);
+        free(s);
+    }
+}
+
 /* A hand on the sheet shines in a ball: the highlight says that the lamp is lower than the pin, whose shadow is there.
  */
 static void a_highlight_too_low_for_the_pin_stops_nothing(void **state)
@@ -351,6 +400,7 @@ int test_photographs_series(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),
         cmocka_unit_test(grain_does_not_flatten_the_curve),
+        cmocka_unit_test(the_size_of_balls_and_pin_tells_the_scale_of_the_print),
         cmocka_unit_test(a_highlight_too_low_for_the_pin_stops_nothing),
         cmocka_unit_test(other_lamps_are_no_series),
         cmocka_unit_test(round_numbers_are_thirds_of_a_stop),
