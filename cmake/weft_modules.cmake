@@ -19,7 +19,7 @@ add_custom_command(OUTPUT ${font_source}
     DEPENDS ${WEFT_FONT} ${CMAKE_SOURCE_DIR}/cmake/embed_bytes.cmake VERBATIM)
 
 file(GLOB shaders CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/player/draw/shaders/*.glsl)
-foreach(model lafortune/lafortune components/components relief/relief woven/woven microcylinder/microcylinder weave/weave)
+foreach(model lafortune/lafortune components/components relief/relief woven/woven microcylinder/microcylinder weave/weave weave/weave_mean)
     list(APPEND shaders ${CMAKE_SOURCE_DIR}/reflectance/${model}.glsl)
 endforeach()
 weft_embed_text(shader_source shaders weft_glsl_ ${shaders})

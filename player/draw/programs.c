@@ -113,7 +113,7 @@ static const char *const *parts_of(const weft_variant *v)
                                         weft_glsl_compressed, NULL};
     static const char *const components[] = {weft_glsl_directions, weft_glsl_tables,     weft_glsl_components,
                                              weft_glsl_relief,     weft_glsl_factorised, NULL};
-    static const char *const weave[] = {weft_glsl_directions, weft_glsl_woven, weft_glsl_weave, weft_glsl_analytic,
+    static const char *const weave[] = {weft_glsl_woven, weft_glsl_weave, weft_glsl_weave_mean, weft_glsl_analytic,
                                         NULL};
     static const char *const threads[] = {weft_glsl_microcylinder, weft_glsl_threads, NULL};
     return v->mode == WEFT_MODE_RAW          ? raw

@@ -26,7 +26,7 @@ extern const char weft_glsl_geometry_frag[];
 extern const char weft_glsl_lafortune[];
 extern const char weft_glsl_components[], weft_glsl_relief[];
 extern const char weft_glsl_woven[];
-extern const char weft_glsl_weave[];
+extern const char weft_glsl_weave[], weft_glsl_weave_mean[];
 extern const char weft_glsl_microcylinder[];
 
 #endif

@@ -1,40 +1,26 @@
 #include "player/texture/weave_texture.h"
 
-#include "btf/direction/direction.h"
-
 #include <math.h>
 
-enum { DIRECTIONS = WEFT_UBO81_COUNT };
-
 static const weft_texture_format float_format = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
-
-static weft_code upload_directions(weft_direction_texture *texture, weft_error *error)
-{
-    weft_vec3 direction[DIRECTIONS];
-    for (int i = 0; i < DIRECTIONS; i++)
-        direction[i] = weft_direction_of_angles(weft_ubo81_angles(i));
-    weft_direction_map map = {0};
-    weft_code code = weft_direction_map_add(&map, direction, NULL, DIRECTIONS, error);
-    if (code == WEFT_OK)
-        code = weft_direction_texture_upload(&map, texture, error);
-    weft_direction_map_free(&map);
-    return code;
-}
 
 static void delete_cloth(weft_weave_texture *t)
 {
     glDeleteTextures(1, &t->table);
-    glDeleteTextures(1, &t->mean);
-    glDeleteTextures(1, &t->noisy_mean);
+    glDeleteTextures(1, &t->means);
+    glDeleteTextures(1, &t->noisy_means);
+}
+
+static weft_code upload_means(const weft_weave_means *means, GLuint *texture, weft_error *error)
+{
+    return weft_gl_texture(float_format, WEFT_WEAVE_MEAN_WIDTH, means->kinds, 0, means->texel, texture, error);
 }
 
 static weft_code upload_cloth(const weft_weave_texels *texels, weft_weave_texture *t, weft_error *error)
 {
     WEFT_TRY(weft_gl_texture(float_format, texels->width, texels->height, 0, texels->table, &t->table, error));
-    WEFT_TRY(weft_gl_texture(float_format, DIRECTIONS, DIRECTIONS, 0, texels->mean, &t->mean, error));
-    if (!texels->noisy_mean)
-        return WEFT_OK;
-    return weft_gl_texture(float_format, DIRECTIONS, DIRECTIONS, 0, texels->noisy_mean, &t->noisy_mean, error);
+    WEFT_TRY(upload_means(&texels->means, &t->means, error));
+    return texels->noisy_means.texel ? upload_means(&texels->noisy_means, &t->noisy_means, error) : WEFT_OK;
 }
 
 weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_weave_layout *layout,
@@ -43,12 +29,9 @@ weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_
     double tiles_u = layout->tiles_u, tiles_v = layout->tiles_v;
     if (!(tiles_u > 0) || !(tiles_v > 0) || !isfinite(tiles_u) || !isfinite(tiles_v))
         return weft_fail(error, WEFT_BAD_USAGE, "a material of %g x %g tiles cannot be shown", tiles_u, tiles_v);
-    if (!t->directions.simplex)
-        WEFT_TRY(upload_directions(&t->directions, error));
-    weft_weave_texture added = {.table_texels = texels->width * texels->height,
-                                .has_noise = texels->has_noise,
-                                .directions = t->directions,
-                                .layout = *layout};
+    weft_weave_texture added = {
+        .texels = texels->width * texels->height, .has_noise = texels->has_noise, .layout = *layout};
+    added.texels += WEFT_WEAVE_MEAN_WIDTH * (texels->means.kinds + texels->noisy_means.kinds);
     weft_code code = upload_cloth(texels, &added, error);
     delete_cloth(code == WEFT_OK ? t : &added);
     if (code == WEFT_OK)
@@ -59,21 +42,18 @@ weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_
 void weft_weave_texture_free(weft_weave_texture *t)
 {
     delete_cloth(t);
-    weft_direction_texture_free(&t->directions);
     *t = (weft_weave_texture){0};
 }
 
 size_t weft_weave_texture_bytes(const weft_weave_texture *t)
 {
-    size_t means = (size_t)(t->mean != 0) + (t->noisy_mean != 0);
-    return 16 * ((size_t)t->table_texels + means * DIRECTIONS * DIRECTIONS);
+    return 16 * (size_t)t->texels;
 }
 
 void weft_weave_texture_bind(const weft_weave_texture *t, GLuint program, unsigned noise_seed)
 {
     weft_gl_bind(program, "weave_table", 0, GL_TEXTURE_2D, t->table);
-    weft_gl_bind(program, "weave_mean", 1, GL_TEXTURE_2D, noise_seed && t->noisy_mean ? t->noisy_mean : t->mean);
-    weft_direction_texture_bind(&t->directions, program, 2);
+    weft_gl_bind(program, "weave_means", 1, GL_TEXTURE_2D, noise_seed && t->noisy_means ? t->noisy_means : t->means);
     glUniform2ui(weft_gl_uniform(program, "noise_seed"), noise_seed, 0);
     weft_gl_set_vec2(program, "weave_tiles", t->layout.tiles_u, t->layout.tiles_v);
     weft_gl_set_vec2(program, "weave_corner", t->layout.corner_u, t->layout.corner_v);

@@ -4,20 +4,18 @@
 #define WEFT_PLAYER_TEXTURE_WEAVE_TEXTURE_H
 
 #include "player/gl/gl.h"
-#include "player/texture/direction_map.h"
 #include "player/texture/weave_texels.h"
 #include "reflectance/microcylinder/microcylinder.h"
 
 #include <stddef.h>
 
 /* Where a sample covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
- * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views.
- * Intensity noise fades likewise, by the size of its own cells. Begins zeroed. */
+ * the tile, in between a blend by the logarithm of the footprint. Intensity noise fades likewise, by the size of its
+ * own cells. Begins zeroed. */
 typedef struct weft_weave_texture {
-    GLuint table, mean, noisy_mean; /* noisy_mean: 0 where it is the same */
+    GLuint table, means, noisy_means; /* noisy_means: 0 where it is the same */
     bool has_noise;
-    int table_texels;
-    weft_direction_texture directions;
+    int texels;
     weft_weave_layout layout;
 } weft_weave_texture;
 
@@ -29,7 +27,7 @@ weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_
                                     weft_weave_texture *texture, weft_error *error);
 void weft_weave_texture_free(weft_weave_texture *texture);
 
-/* Of graphics memory, without the directions. */
+/* Of graphics memory. */
 size_t weft_weave_texture_bytes(const weft_weave_texture *texture);
 
 /* Sets the uniforms of analytic.glsl; `program` is in use. noise_seed 0: without noise. */

@@ -1,4 +1,4 @@
-/* A weave as a texture of four floats per texel, for reflectance/weave/weave.glsl. */
+/* A weave as textures of four floats per texel, for reflectance/weave/weave.glsl and weave_mean.glsl. */
 #ifndef WEFT_REFLECTANCE_WEAVE_SHADER_TABLE_H
 #define WEFT_REFLECTANCE_WEAVE_SHADER_TABLE_H
 
@@ -21,5 +21,29 @@ enum { WEFT_WEAVE_TABLE_WIDTH = 256, WEFT_WEAVE_TABLE_HEADER = 3, WEFT_WEAVE_TAB
 /* Sets *width and *height, in texels, and fills `rgba` [height][width][4], owned by the caller, unless it is NULL.
  * Pure. */
 void weft_weave_table(const weft_weave *weave, float *rgba, int *width, int *height);
+
+/* The mean over the tile, sum_k F_k (kd/pi + ks s aw f_s), with one row of texels for each kind of yarn:
+ *     0     sum of F ks s aw over the yarns of the kind, r, g, b; 1 = warp or 0 = weft
+ *     1     sum of F kd / pi over all yarns, r, g, b; the largest umax of the kind (rad; 0: it has no highlight)
+ *     2     alpha, beta, phase scale, width / 2 (cells)
+ *     3     cot psi, 1 / |sin psi| (0 = filament), shape |shape| and scale of the spine
+ *     4 + i radius R of the spine at |u| = i / STEPS of that umax, and 1 where there is such a yarn, both times the
+ * fade of a filament and as the mean over the inclinations of its segments; the same at i + 1 */
+enum { WEFT_WEAVE_MEAN_STEPS = 256, WEFT_WEAVE_MEAN_WIDTH = 4 + WEFT_WEAVE_MEAN_STEPS };
+
+typedef struct weft_weave_means {
+    int kinds;
+    bool noisy;        /* staples take their radius from the steps, too */
+    float (*texel)[4]; /* [kinds][WEFT_WEAVE_MEAN_WIDTH] */
+} weft_weave_means;
+
+/* `noisy`: with the noise of inclination. Errors: WEFT_SYSTEM for memory. The caller frees with weft_weave_means_free,
+ * also on failure. */
+weft_code weft_weave_means_of(const weft_weave *weave, bool noisy, weft_weave_means *means, weft_error *error);
+void weft_weave_means_free(weft_weave_means *means);
+
+/* weft_weave_mean_brdf as it is drawn. Filaments have closed integrals round the yarn; those along staples are sums
+ * over 12 places. docs/notes/weaves.md has the errors. Pure. */
+weft_rgb weft_weave_tabulated_mean(const weft_weave_means *means, weft_vec3 light, weft_vec3 view);
 
 #endif

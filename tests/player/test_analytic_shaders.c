@@ -10,28 +10,10 @@ enum { WIDTH = STAGE_SHADED_WIDTH, HEIGHT = STAGE_SHADED_HEIGHT };
 
 typedef struct cloth_model {
     weft_weave weave;
-    weft_triangulation *directions;
-    weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT];
+    weft_weave_texels texels;
     weft_weave_layout layout;
     int noise_seed;
 } cloth_model;
-
-static weft_rgb mean_brdf(const cloth_model *model, weft_vec3 light, weft_vec3 view)
-{
-    weft_rgb sum = {0};
-    weft_barycentric l = weft_triangulation_lookup(model->directions, light);
-    weft_barycentric v = weft_triangulation_lookup(model->directions, view);
-    for (int i = 0; i < 9; i++) {
-        if (l.index[i % 3] < 0 || v.index[i / 3] < 0)
-            continue;
-        weft_rgb value = model->mean[v.index[i / 3]][l.index[i % 3]];
-        double weight = l.weight[i % 3] * v.weight[i / 3];
-        sum.r += weight * value.r;
-        sum.g += weight * value.g;
-        sum.b += weight * value.b;
-    }
-    return sum;
-}
 
 /* How much of the intensity noise is left to its mean. */
 static double resolved_noise(const cloth_model *model, const weft_weave_point *place, double level)
@@ -77,7 +59,9 @@ static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
         return (weft_rgba){0, 0, 0, 1};
     double fade = fmin(fmax((width_of_footprint(at) + 1) / 2, 0), 1);
     int across = places_along(at->sides[0], at->sides[1]), up = places_along(at->sides[2], at->sides[3]);
-    weft_rgb far = mean_brdf(model, light, view), sum = {fade * far.r, fade * far.g, fade * far.b};
+    const weft_weave_means *noisy = &model->texels.noisy_means;
+    const weft_weave_means *means = model->noise_seed && noisy->texel ? noisy : &model->texels.means;
+    weft_rgb far = weft_weave_tabulated_mean(means, light, view), sum = {fade * far.r, fade * far.g, fade * far.b};
     for (int i = 0; i < across * up; i++) {
         weft_rgb near = cloth_at(model, at, (i % across + 0.5) / across - 0.5, (i / across + 0.5) / up - 0.5);
         double weight = (1 - fade) / (across * up);
@@ -88,43 +72,23 @@ static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
     return stage_lit((weft_rgb){WEFT_PI * sum.r, WEFT_PI * sum.g, WEFT_PI * sum.b}, light, 1);
 }
 
-/* Means of the tile: exact ones, but under noise those that test_weave_texels.c holds against the noisy texture. */
-static void tabulate_means(cloth_model *model, const weft_vec3 direction[WEFT_UBO81_COUNT])
-{
-    weft_weave_texels texels;
-    weft_error error = {0};
-    expect_ok(weft_weave_texels_of(&model->weave, &texels, &error), &error);
-    for (int i = 0; i < WEFT_UBO81_COUNT * WEFT_UBO81_COUNT; i++) {
-        int view = i / WEFT_UBO81_COUNT, light = i % WEFT_UBO81_COUNT;
-        const float *noisy = texels.noisy_mean ? texels.noisy_mean[i] : NULL;
-        model->mean[view][light] = model->noise_seed && noisy
-                                       ? (weft_rgb){(weft_real)noisy[0], (weft_real)noisy[1], (weft_real)noisy[2]}
-                                       : weft_weave_mean_brdf(&model->weave, direction[light], direction[view]);
-    }
-    weft_weave_texels_free(&texels);
-}
-
 static void compare_weave(void **state, const char *name, double repeat, int noise_seed)
 {
     stage *s = *state;
     weft_error error = {0};
     char path[512], warning[WEFT_MESSAGE_SIZE];
     cloth_model *model = calloc(1, sizeof *model);
-    weft_vec3 direction[WEFT_UBO81_COUNT];
-    for (int i = 0; i < WEFT_UBO81_COUNT; i++)
-        direction[i] = weft_direction_of_angles(weft_ubo81_angles(i));
     snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
     expect_ok(weft_weave_read(path, NULL, 0, &model->weave, warning, &error), &error);
-    expect_ok(weft_triangulation_build(direction, WEFT_UBO81_COUNT, &model->directions, &error), &error);
+    expect_ok(weft_weave_texels_of(&model->weave, &model->texels, &error), &error);
     model->noise_seed = noise_seed;
-    tabulate_means(model, direction);
     model->layout = (weft_weave_layout){2.25, 2, 0.3, -0.4};
     expect_ok(weft_player_set_weave(s->player, &model->weave, &model->layout, &error), &error);
     weft_scene scene = weft_scene_default();
     scene.repeat = repeat;
     scene.noise_seed = noise_seed;
     stage_expect_small(name, stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_cloth, model));
-    weft_triangulation_free(model->directions);
+    weft_weave_texels_free(&model->texels);
     weft_weave_free(&model->weave);
     free(model);
 }

@@ -1,5 +1,5 @@
-/* weave.glsl and woven.glsl give what weft_weave_locate and weft_weave_brdf give, noise included, in both dialects of
- * GLSL. */
+/* weave.glsl and woven.glsl give what weft_weave_locate and weft_weave_brdf give, noise included, and weave_mean.glsl
+ * what weft_weave_tabulated_mean gives, in both dialects of GLSL. */
 #include "btf/direction/direction.h"
 #include "player/gl/shaders.h"
 #include "reflectance/weave/shader_table.h"
@@ -95,6 +95,47 @@ static void compare_fabric(const char *name, bool frozen, weft_gl_profile profil
     weft_weave_free(&weave);
 }
 
+/* ---- The mean of the tile ---- */
+
+static const char mean_source[] =
+    "vec4 twin(sampler2D means, vec4 place, vec4 light, vec4 view)\n"
+    "{\n"
+    "    vec3 sum = vec3(0.0);\n"
+    "    for (int k = 0; k < textureSize(means, 0).y; k++)\n"
+    "        sum += weave_mean_of_kind(means, weave_kind(means, k), light.xyz, view.xyz);\n"
+    "    bool lit = light.z > 0.0 && view.z > 0.0;\n"
+    "    return vec4(lit ? sum + weave_mean_diffuse(means) : vec3(0.0), 1.0);\n"
+    "}\n";
+
+static void compare_means(const char *name, bool noisy, weft_gl_profile profile, twin_queries queries)
+{
+    const char *const sources[] = {noisy ? "#define NOISE true\n" : "#define NOISE false\n",
+                                   weft_glsl_woven,
+                                   weft_glsl_weave,
+                                   weft_glsl_weave_mean,
+                                   mean_source,
+                                   NULL};
+    static float result[TWIN_QUERIES][4];
+    char path[512];
+    weft_weave weave;
+    weft_weave_means means;
+    weft_error error = {0};
+    int different = 0;
+    snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
+    if (weft_weave_read(path, NULL, 0, &weave, NULL, &error) != WEFT_OK ||
+        weft_weave_means_of(&weave, noisy, &means, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    twin_run(profile, sources, &(twin_table){means.texel[0], WEFT_WEAVE_MEAN_WIDTH, means.kinds}, queries, result);
+    for (int i = 0; i < TWIN_QUERIES; i++) {
+        weft_rgb f = weft_weave_tabulated_mean(&means, direction_of(queries[1][i]), direction_of(queries[2][i]));
+        different += !(close_to((double)result[i][0], f.r) && close_to((double)result[i][2], f.b));
+    }
+    print_message("mean of %s: %d of %d differ\n", name, different, TWIN_QUERIES);
+    assert_true(different < TWIN_QUERIES / 500);
+    weft_weave_means_free(&means);
+    weft_weave_free(&weave);
+}
+
 static void compare_fabrics(weft_gl_profile profile)
 {
     static twin_queries queries;
@@ -103,6 +144,10 @@ static void compare_fabrics(weft_gl_profile profile)
     compare_fabric("silk_charmeuse", false, profile, queries);
     compare_fabric("silk_charmeuse", true, profile, queries);
     compare_fabric("silk_shantung", false, profile, queries);
+    compare_means("cotton_denim", false, profile, queries);
+    compare_means("cotton_twill", true, profile, queries);
+    compare_means("silk_charmeuse", false, profile, queries);
+    compare_means("silk_shantung", true, profile, queries);
 }
 
 int test_glsl_twins(void)

@@ -1,9 +1,9 @@
 // Analytic cloth: the woven texture where a sample resolves the yarns, the mean of the tile where it does not. A sample
 // is a pixel, or the part of it that one of the frames of its mean stands for.
 // Constant defined by player/draw/programs.c: NOISE.
-// C twins: weft_weave_brdf and weft_weave_mean_brdf (tabulated, see player/texture/weave_texture.h).
+// C twins: weft_weave_brdf and weft_weave_tabulated_mean.
 uniform sampler2D weave_table;
-uniform sampler2D weave_mean; // column: light, row: view; BRDF in 1/sr
+uniform sampler2D weave_means;
 uniform vec2 weave_tiles;     // for one material
 uniform vec2 weave_corner;    // where a tile begins, tiles from that of the material
 uniform uvec2 noise_seed;     // low and high bits
@@ -15,18 +15,6 @@ const float FADE_END = 1.0;
 // How many times longer than wide a footprint may be and be sampled along its length; how many places at most on a side.
 const float LONGEST = 4.0;
 const float MOST_PLACES = 3.0;
-
-vec3 mean_brdf(Corners lights, Corners views)
-{
-    vec3 sum = vec3(0.0);
-    for (int v = 0; v < 3; v++) {
-        for (int l = 0; l < 3; l++) {
-            float weight = views.weight[v] * lights.weight[l];
-            sum += weight * texelFetch(weave_mean, ivec2(lights.label[l], views.label[v]), 0).rgb;
-        }
-    }
-    return sum;
-}
 
 float fade_at(float level)
 {
@@ -97,13 +85,19 @@ vec3 yarn_radiance(SurfacePoint point)
 
 vec3 mean_radiance(SurfacePoint point)
 {
-    Corners views = find_corners(0, point.view);
+    int kinds = textureSize(weave_means, 0).y;
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < LIGHT_COUNT; i++) {
-        vec3 irradiance = surface_irradiance(point, i);
-        if (irradiance != vec3(0.0))
-            sum += irradiance * mean_brdf(find_corners(0, surface_light(point, i)), views);
+    for (int k = 0; k < kinds; k++) {
+        WeaveKind kind = weave_kind(weave_means, k);
+        for (int i = 0; i < LIGHT_COUNT; i++) {
+            vec3 irradiance = surface_irradiance(point, i);
+            if (irradiance != vec3(0.0))
+                sum += irradiance * weave_mean_of_kind(weave_means, kind, surface_light(point, i), point.view);
+        }
     }
+    vec3 diffuse = weave_mean_diffuse(weave_means);
+    for (int i = 0; i < LIGHT_COUNT; i++)
+        sum += surface_light(point, i).z > 0.0 ? surface_irradiance(point, i) * diffuse : vec3(0.0);
     return sum;
 }
 
