@@ -141,6 +141,12 @@ static weft_rgb divided(weft_rgb value, weft_real divisor)
     return (weft_rgb){value.r / divisor, value.g / divisor, value.b / divisor};
 }
 
+/* Components are reflectance times the cosine of the light, bounded by multiples of it. */
+static weft_rgb without_cosine(weft_rgb value, weft_real cosine)
+{
+    return cosine > 0 ? divided(value, cosine) : (weft_rgb){0};
+}
+
 /* BRDF x pi; `factor` is that of the components, where those are evaluated. */
 static weft_rgb texel_value(const weft_model *model, int level, int x, int y, const weft_query *query,
                             const float *factor)
@@ -149,9 +155,9 @@ static weft_rgb texel_value(const weft_model *model, int level, int x, int y, co
     if (components && !(query->view.z > 0))
         return (weft_rgb){0};
     if (components)
-        return divided(
+        return without_cosine(
             weft_components_texel(components, components->component_count, factor, level, x, y, query->light.z),
-            fmax(query->light.z, (weft_real)1e-6));
+            query->light.z);
     weft_rgba value = weft_material_texel(&model->material, &model->directions, level, x, y, query->light, query->view);
     return (weft_rgb){value.r, value.g, value.b};
 }
@@ -215,9 +221,10 @@ static weft_rgb material_sample(const weft_model *model, const weft_query *query
 {
     const weft_components *components = model->maps.components;
     if (components)
-        return divided(weft_components_sample_through(&model->maps, &model->relief, components->component_count,
-                                                      query->level, query->u, query->v, query->light, query->view),
-                       fmax(query->light.z, (weft_real)1e-6));
+        return without_cosine(weft_components_sample_through(&model->maps, &model->relief, components->component_count,
+                                                             query->level, query->u, query->v, query->light,
+                                                             query->view),
+                              query->light.z);
     weft_rgba sample = weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v,
                                             query->light, query->view);
     return (weft_rgb){sample.r, sample.g, sample.b};

@@ -90,6 +90,15 @@ static void components_come_before_lobes(void **state)
     assert_true(r.g > 0);
     assert_float_equal(brdf_of(model, place).g, r.g / (WEFT_PI * light.z), 1e-9);
     assert_true(fabs(brdf_of(lobes, place).g - brdf_of(model, place).g) > 1e-3);
+    /* However low the light, nothing fades but by its cosine. */
+    const double low[2] = {1e-4, 1e-9};
+    double at_low[2];
+    for (int i = 0; i < 2; i++) {
+        weft_query grazing = place;
+        grazing.light = weft_unit(weft_vec3_of(1, 0, (weft_real)low[i]));
+        at_low[i] = brdf_of(model, grazing).g;
+    }
+    assert_true(at_low[0] > 0 && fabs(at_low[1] / at_low[0] - 1) < 0.01);
     /* The mean is that of the texels. */
     double sum = 0;
     for (int i = 0; i < 15; i++)
