@@ -47,8 +47,9 @@ vec2 weave_staple_spine(sampler2D means, WeaveKind kind, float sine, float cosin
     return vec2(kind.scale * root * root * root, 1.0);
 }
 
-// Without branches: they cost a rasteriser on the processor more than their arithmetic.
-float weave_staple_mean(sampler2D means, WeaveKind kind, vec3 halfway, vec3 light, vec3 view)
+// Without branches, which cost a rasteriser on the processor more than their arithmetic, and with one division a place:
+// c1 + c2 = |H| n.h is the root that the mirroring point needs.
+float weave_staple_mean(sampler2D means, WeaveKind kind, vec3 halfway, vec3 light)
 {
     float quarter = 0.5 * WOVEN_PI;
     float across = sqrt(halfway.y * halfway.y + halfway.z * halfway.z);
@@ -58,7 +59,6 @@ float weave_staple_mean(sampler2D means, WeaveKind kind, vec3 halfway, vec3 ligh
     float high = min(reach, sin(clamp(kind.umax - u0, -quarter, quarter)));
     vec2 at_u0 = halfway.yz / across;
     vec3 l = vec3(light.x, dot(light.yz, at_u0), light.y * at_u0.y - light.z * at_u0.x);
-    vec3 v = vec3(view.x, dot(view.yz, at_u0), view.y * at_u0.y - view.z * at_u0.x);
     float middle = 0.5 * (low + high);
     float extent = 0.5 * (high - low);
     float angle = WOVEN_PI / float(WEAVE_MEAN_NODES);
@@ -69,20 +69,19 @@ float weave_staple_mean(sampler2D means, WeaveKind kind, vec3 halfway, vec3 ligh
     for (int i = 0; i < count; i++) {
         float sin_x = middle - extent * theta.x;
         float cos_x = sqrt(max(1.0 - sin_x * sin_x, WEAVE_MEAN_MIN_COSINE));
-        float sin_u = at_u0.x * cos_x + at_u0.y * sin_x;
-        float cos_u = at_u0.y * cos_x - at_u0.x * sin_x;
         float over = across * cos_x;
-        float inverse_norm = inversesqrt(halfway.x * halfway.x + over * over);
-        float cosine = clamp(-kind.cot_psi * across * sin_x * inverse_norm, -1.0, 1.0);
-        float sine = sqrt(1.0 - cosine * cosine);
-        float sin_v = (halfway.x * sine - over * cosine) * inverse_norm;
-        float cos_v = max((halfway.x * cosine + over * sine) * inverse_norm, 0.0);
-        float c1 = max(sin_v * l.x + cos_v * (cos_x * l.y + sin_x * l.z), 0.0);
-        float c2 = max(sin_v * v.x + cos_v * (cos_x * v.y + sin_x * v.z), 0.0);
-        float both = c1 + c2;
-        vec2 spine = weave_staple_spine(means, kind, sin_u, cos_u);
-        float shares = cos_v > 0.0 ? c1 * c2 / max(both * both * cos_x, WOVEN_MIN_COSINE_SUM) : 0.0;
-        sum += theta.y * (spine.x + kind.radius * spine.y * cos_v) * shares;
+        float projected = -kind.cot_psi * across * sin_x;
+        float square = halfway.x * halfway.x + over * over;
+        float sum_square = max(square - projected * projected, 1e-12 * square);
+        float cosine_sum = sqrt(sum_square);
+        float inverse = 1.0 / (square * sum_square * cos_x);
+        float inverse_square = inverse * sum_square * cos_x;
+        float sin_v = (halfway.x * cosine_sum - over * projected) * inverse_square;
+        float cos_v = (halfway.x * projected + over * cosine_sum) * inverse_square;
+        float c1 = sin_v * l.x + cos_v * (cos_x * l.y + sin_x * l.z);
+        float shares = max(c1, 0.0) * max(cosine_sum - c1, 0.0) * inverse * square;
+        vec2 spine = weave_staple_spine(means, kind, at_u0.x * cos_x + at_u0.y * sin_x, at_u0.y * cos_x - at_u0.x * sin_x);
+        sum += cos_v > 0.0 ? theta.y * (spine.x + kind.radius * spine.y * cos_v) * shares : 0.0;
         theta = vec2(theta.x * turn.x - theta.y * turn.y, theta.y * turn.x + theta.x * turn.y);
     }
     return sum * angle * extent * kind.radius * kind.inverse_sin_psi;
@@ -164,7 +163,7 @@ vec3 weave_mean_of_kind(sampler2D means, WeaveKind kind, vec3 light, vec3 view)
     if (!shines)
         return vec3(0.0);
     float value = kind.inverse_sin_psi == 0.0 ? weave_filament_mean(means, kind, halfway, l, v)
-                                              : weave_staple_mean(means, kind, halfway, l, v);
+                                              : weave_staple_mean(means, kind, halfway, l);
     float x = clamp(-dot(light, view), -1.0, 1.0);
     float phase = kind.alpha + exp(kind.beta * x - abs(kind.beta)) * kind.phase_scale;
     return kind.colour * (value * phase);
