@@ -13,7 +13,6 @@ enum {
     RACE_PASSES = 4,
     START_PASSES = 6,
     SCREENED = 4, /* lobes that are followed of those that the screen ranks */
-    STEPS = 2,    /* as many for a number of lobes that is only a step to the next */
     INCUMBENT = 2,
     CHALLENGER /* places among the trials of a workspace */
 };
@@ -33,8 +32,8 @@ typedef struct search {
     const weft_bundle *bundle;
     const weft_samples *samples;
     int channel;
-    const weft_fit_options *wanted; /* of the fit */
-    weft_fit_options options;       /* of the starts */
+    weft_fit_options wanted;  /* of the fit with so many lobes */
+    weft_fit_options options; /* of its starts */
     weft_fit_workspace *workspace;
     bool has_incumbent, has_challenger;
     double left[WEFT_TRIALS]; /* what those two leave where T keeps within a moderate contrast */
@@ -46,7 +45,7 @@ typedef struct search {
 static double moderate_residual(const search *own)
 {
     const weft_trial *now = &own->workspace->trial[0];
-    double left = own->wanted->table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
+    double left = own->wanted.table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
     return isfinite(left) ? left : INFINITY;
 }
 
@@ -70,14 +69,7 @@ static double least_so_far(const search *own)
     return own->has_challenger ? fmin(least, own->left[CHALLENGER]) : least;
 }
 
-/* Whether the fit shall have more lobes than the starts have so far. */
-static bool is_step(const search *own)
-{
-    return own->options.lobe_count < own->wanted->lobe_count;
-}
-
-/* Follows a start that has been looked at once; to the end only if it does not fall behind and if no more lobes are to
- * come. */
+/* Follows a start that has been looked at once; to the end only if it does not fall behind. */
 static void follow(search *own, bool is_usual)
 {
     weft_fit_workspace *workspace = own->workspace;
@@ -85,9 +77,9 @@ static void follow(search *own, bool is_usual)
     double least = least_so_far(own);
     race.max_passes = RACE_PASSES;
     race.wanted = isfinite(least) ? BEATEN * least : 0;
-    if (isfinite(least) || is_step(own))
+    if (isfinite(least))
         weft_workspace_refine(own->bundle, own->samples, own->channel, &race, workspace, 0.1);
-    if (workspace->trial[0].residual < BEATEN * least && !is_step(own))
+    if (workspace->trial[0].residual < BEATEN * least)
         weft_workspace_refine(own->bundle, own->samples, own->channel, &own->options, workspace, 0.1);
     own->quarters += (own->options.coarse ? 1 : 4) * workspace->trial[0].fit.passes;
     keep(own, is_usual);
@@ -144,49 +136,34 @@ static bool are_alike(const search *own)
     return own->has_incumbent && own->has_challenger && fmin(a, b) > ALIKE * fmax(a, b);
 }
 
-/* From the best fit to the best with one lobe more. */
-static void grow(search *own)
+/* Finds starts with one lobe more than `base`, with few passes over few lights. The best comes first. Returns their
+ * number, 1 or 2. */
+static int grow(search *own, const weft_frame *frame, const weft_fit *base, weft_fit start[2])
 {
-    weft_fit_workspace *workspace = own->workspace;
-    const weft_fit base = workspace->trial[INCUMBENT].fit;
+    weft_trial *trial = own->workspace->trial;
     weft_fit_lobe lobe[SCREENED];
-    own->options.lobe_count = base.lobe_count + 1;
-    int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
-                                &workspace->trial[INCUMBENT], is_step(own) ? STEPS : SCREENED, lobe);
+    look_at(own, &own->options, base);
+    own->quarters += own->options.coarse ? 1 : 4;
+    weft_trial_swap(&trial[0], &trial[INCUMBENT]);
+    int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, own->workspace,
+                                &trial[INCUMBENT], SCREENED, lobe);
     own->has_incumbent = own->has_challenger = false;
-    if (own->options.lobe_count <= 2) {
-        weft_fit usual = usual_start(own->options.lobe_count, &base.frame);
+    bool is_usual = own->options.lobe_count > 2;
+    if (!is_usual) {
+        weft_fit usual = usual_start(own->options.lobe_count, frame);
         try_shapes(own, &usual, true);
     }
-    bool is_usual = own->options.lobe_count > 2;
-    for (int split = 0; split < base.lobe_count; split++) {
-        weft_fit more = with_lobe_split(&base, split);
-        if (is_usual || base.lobe[split].log_exponent >= SHARP)
+    for (int split = 0; split < base->lobe_count; split++) {
+        weft_fit more = with_lobe_split(base, split);
+        if (is_usual || base->lobe[split].log_exponent >= SHARP)
             try_shapes(own, &more, is_usual);
     }
     for (int i = 0; i < found && (i == 0 || !are_alike(own)); i++) {
-        weft_fit more = base;
+        weft_fit more = *base;
         more.lobe[more.lobe_count++] = lobe[i];
         try_shapes(own, &more, false);
     }
     settle(own);
-}
-
-/* Finds starts with as many lobes as are wanted, each number from the one before, with few passes over few lights. The
- * best comes first. Returns their number, 1 or 2. */
-static int find_starts(search *own, const weft_frame *frame, weft_fit start[2])
-{
-    const weft_trial *trial = own->workspace->trial;
-    const weft_fit nothing = {.frame = *frame};
-    own->options = *own->wanted;
-    own->options.fit_frame = false;
-    own->options.coarse = own->bundle->is_coarse;
-    own->options.max_passes = START_PASSES;
-    own->options.tolerance = START_TOLERANCE;
-    own->options.lobe_count = 0;
-    try_shapes(own, &nothing, true);
-    while (own->options.lobe_count < own->wanted->lobe_count)
-        grow(own);
     start[0] = trial[INCUMBENT].fit;
     start[1] = trial[CHALLENGER].fit;
     bool is_alone = own->options.lobe_count == 1;
@@ -195,31 +172,39 @@ static int find_starts(search *own, const weft_frame *frame, weft_fit start[2])
 
 /* ---- From a start to a fit ---- */
 
-static void refine(const search *own, bool turning, weft_fit *fit, double *table)
+/* Refines the start that was looked at. It stops where it will not leave less than `wanted` (0: goes on). */
+static void refine(const search *own, bool turning, double wanted, weft_fit *fit, double *table)
 {
     weft_trial *now = &own->workspace->trial[0];
-    weft_fit_options options = *own->wanted;
+    weft_fit_options options = own->wanted;
     options.fit_frame = turning;
+    options.wanted = wanted;
     weft_workspace_refine(own->bundle, own->samples, own->channel, &options, own->workspace, 0.01);
     weft_workspace_finish(own->bundle, &options, now, fit, table);
 }
 
-/* Refines the start that was looked at, first in its frame. Returns what is left. A diffuse term has no use for turns.
- */
+/* Refines the start that was looked at, with its frame, and in its frame as long as that may leave nearly as little.
+ * Returns what is left. A diffuse term has no use for turns. */
 static double finish(const search *own, weft_fit *fit, double *table)
 {
-    double *turned_table = own->workspace->scratch[0];
-    weft_fit turned;
-    refine(own, false, fit, table);
-    if (own->wanted->fit_frame && fit->lobe_count > 0) {
-        own->workspace->trial[0].fit.passes = 0;
-        refine(own, true, &turned, turned_table);
-        if (turned.residual < WORTHWHILE * fit->residual) {
-            *fit = turned;
-            fit->has_turned = true;
-            memcpy(table, turned_table, (size_t)own->bundle->view_count * sizeof *table);
-        }
+    if (!own->wanted.fit_frame || own->workspace->trial[0].fit.lobe_count == 0) {
+        refine(own, false, 0, fit, table);
+        return moderate_residual(own);
     }
+    const weft_fit start = own->workspace->trial[0].fit;
+    double *still_table = own->workspace->scratch[0];
+    weft_fit still;
+    refine(own, true, 0, fit, table);
+    fit->has_turned = true;
+    double left = moderate_residual(own), most = fit->residual / WORTHWHILE;
+    look_at(own, &own->wanted, &start);
+    refine(own, false, most, &still, still_table);
+    still.passes += fit->passes;
+    fit->passes = still.passes;
+    if (!(still.residual <= most))
+        return left;
+    *fit = still;
+    memcpy(table, still_table, (size_t)own->bundle->view_count * sizeof *table);
     return moderate_residual(own);
 }
 
@@ -227,7 +212,7 @@ static double finish(const search *own, weft_fit *fit, double *table)
  * a lobe that is alone tell nothing of that: it may have a long way to go. */
 static bool catches_up(const search *own, double left)
 {
-    weft_fit_options race = *own->wanted;
+    weft_fit_options race = own->wanted;
     race.fit_frame = false;
     race.max_passes = START_PASSES;
     race.wanted = race.lobe_count > 1 ? NEAR * left : 0;
@@ -242,7 +227,7 @@ static void try_second(const search *own, const weft_fit *start, double left, we
     double *other_table = own->workspace->scratch[1];
     weft_fit other;
     weft_trial_swap(now, best);
-    look_at(own, own->wanted, start);
+    look_at(own, &own->wanted, start);
     bool is_near = catches_up(own, left),
          is_better = is_near && finish(own, &other, other_table) < CLEARLY_BETTER * left;
     int passes = fit->passes + (is_near ? other.passes : now->fit.passes);
@@ -255,21 +240,56 @@ static void try_second(const search *own, const weft_fit *start, double left, we
     fit->passes = passes;
 }
 
+/* A fit that is only a step to one with more lobes looks at the coarse lights alone. */
+static void set_options(const weft_bundle *bundle, const weft_fit_options *options, int lobe_count, search *own)
+{
+    own->wanted = *options;
+    own->wanted.lobe_count = lobe_count;
+    own->wanted.coarse |= lobe_count < options->lobe_count && bundle->is_coarse;
+    own->options = own->wanted;
+    own->options.fit_frame = false;
+    own->options.coarse = bundle->is_coarse;
+    own->options.max_passes = START_PASSES;
+    own->options.tolerance = START_TOLERANCE;
+}
+
+/* Black leaves the energy of the samples: where most are negative, nearly equal lobes may leave more. */
+static void blacken(double energy, weft_fit *fit)
+{
+    fit->diffuse = 0;
+    for (int i = 0; i < fit->lobe_count; i++)
+        fit->lobe[i].amplitude = 0;
+    fit->residual = energy;
+}
+
+/* The fit with one lobe more than `base`; without `base`, the diffuse term alone. */
+static void fit_next(search *own, const weft_frame *frame, const weft_fit *base, weft_fit *fit, double *table)
+{
+    const weft_fit nothing = {.frame = *frame};
+    weft_fit start[2] = {nothing};
+    int count = base ? grow(own, frame, base, start) : 1;
+    look_at(own, &own->wanted, &start[0]);
+    if (!isfinite(moderate_residual(own)))
+        look_at(own, &own->wanted, &nothing);
+    double left = finish(own, fit, table);
+    if (count > 1)
+        try_second(own, &start[1], left, fit, table);
+    own->quarters += (own->wanted.coarse ? 1 : 4) * fit->passes;
+    if (!own->wanted.coarse && fit->residual > own->samples->energy[own->channel])
+        blacken(own->samples->energy[own->channel], fit);
+}
+
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table)
 {
-    const weft_fit nothing = {.frame = *frame};
-    search own = {.bundle = bundle, .samples = samples, .channel = channel, .wanted = options, .workspace = workspace};
-    weft_fit start[2];
+    search own = {.bundle = bundle, .samples = samples, .channel = channel, .workspace = workspace};
     *fit = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
     if (weft_workspace_finish_empty(bundle, samples, channel, fit, table))
         return;
-    int count = find_starts(&own, frame, start);
-    look_at(&own, options, &start[0]);
-    if (!isfinite(moderate_residual(&own)))
-        look_at(&own, options, &nothing);
-    double left = finish(&own, fit, table);
-    if (count > 1)
-        try_second(&own, &start[1], left, fit, table);
-    fit->passes += (int)ceil(own.quarters / 4);
+    for (int count = 0; count <= options->lobe_count; count++) {
+        const weft_fit base = *fit;
+        set_options(bundle, options, count, &own);
+        fit_next(&own, frame, count > 0 ? &base : NULL, fit, table);
+    }
+    fit->passes = (int)ceil(own.quarters / 4);
 }

@@ -59,9 +59,9 @@ int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *sam
 void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                      const weft_fit_options *options, weft_fit_workspace *workspace, weft_fit *fit, double *table);
 
-/* From nothing, in the frame that is given: shapes are found lobe by lobe, with few passes over few lights, and the
- * best two are refined. With options->fit_frame each is then turned from there, where that takes at least 2 % off the
- * residual. The workspace keeps the last pass. */
+/* From nothing, in the frame that is given, lobe by lobe: each number of lobes begins from the fit with one fewer. Its
+ * starts are found with few passes over few lights, and the best two are refined. With options->fit_frame the frame is
+ * turned, where that takes at least 2 % off the residual. */
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table);
 

@@ -180,7 +180,7 @@ WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own,
             const lanes *from = own + weft_gram_product(p, q, count);
             float *to = sums + (size_t)weft_gram_product(a, b, count) * (size_t)stride + strip->view;
             if (strip->split)
-                *to = (lane ? *to : 0) + lanes_sum(*from);
+                *to = lanes_sum(*from);
             else
                 lanes_store(to + lane, *from);
         }
@@ -200,14 +200,16 @@ WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, cons
         int end = part == WEFT_PART_COARSE ? strip->coarse_slots : strip->slots;
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, lobe_count, table, lane);
-            memset(own_sums, 0, (size_t)products * sizeof *own_sums);
+            if (!strip->split || lane == 0)
+                memset(own_sums, 0, (size_t)products * sizeof *own_sums);
             for (int first = 0; first < end; first += PIECE) {
                 int piece = end - first < PIECE ? end - first : PIECE;
                 write_columns(bundle, cosine, value, point, lobe_count, &own,
                               strip->first + first * WEFT_STRIP_LANES + lane, piece, columns);
                 add_products(columns, piece, count, own_sums);
             }
-            store_sums(strip, lane, own_sums, count, bundle->view_stride, sums);
+            if (!strip->split || lane + LANES == WEFT_STRIP_LANES)
+                store_sums(strip, lane, own_sums, count, bundle->view_stride, sums);
         }
     }
 }

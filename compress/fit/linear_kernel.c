@@ -34,7 +34,7 @@ WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, weft_trial *t
     int stride = bundle->view_stride;
     lanes strength[WEFT_LINEAR_MAX] = {{0}}, energy = {0}, model_energy = {0};
     const linear_point at = linear_point_of(trial, trial->at.x);
-    for (int view = 0; view < stride; view += LANES) {
+    for (int view = 0; view < bundle->view_count; view += LANES) {
         combination column[WEFT_LINEAR_MAX];
         UNROLL
         for (int j = 0; j < n; j++)
@@ -85,7 +85,7 @@ WEFT_INLINE double residual_of(int lobes, const weft_bundle *bundle, const weft_
 {
     const linear_point at = linear_point_of(trial, linear->x);
     lanes sum = {0};
-    for (int view = 0; view < bundle->view_stride; view += LANES) {
+    for (int view = 0; view < bundle->view_count; view += LANES) {
         linear_lanes own = load_linear(trial, lobes, bundle->view_stride, view);
         view_state state = state_of(&own, &at, lobes, with_table);
         sum += state.residual;
@@ -108,7 +108,7 @@ WEFT_INLINE double normal_of(int lobes, const weft_bundle *bundle, const weft_tr
     const linear_point at = linear_point_of(trial, x);
     lanes h_sum[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX] = {{{0}}}, g_sum[WEFT_LINEAR_MAX] = {{0}};
     lanes scale = {0}, residual = {0};
-    for (int view = 0; view < bundle->view_stride; view += LANES) {
+    for (int view = 0; view < bundle->view_count; view += LANES) {
         linear_lanes own = load_linear(trial, lobes, bundle->view_stride, view);
         view_state state = state_of(&own, &at, lobes, with_table);
         lanes s[WEFT_LINEAR_MAX] = {{0}}, t2 = state.t * state.t;

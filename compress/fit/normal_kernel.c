@@ -251,7 +251,7 @@ WEFT_INLINE void sum_views(int lobes, bool rotate, const weft_bundle *bundle, co
         x[1 + i] = trial->fit.lobe[i].amplitude;
     const linear_point linear = linear_point_of(trial, x);
     const shapes at = shapes_of(&trial->fit);
-    for (int view = 0; view < bundle->view_stride; view += LANES) {
+    for (int view = 0; view < bundle->view_count; view += LANES) {
         local_gram gram;
         lanes s[WEFT_NORMAL_MAX];
         linear_lanes rows = load_linear(trial, lobes, bundle->view_stride, view);
