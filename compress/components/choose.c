@@ -61,7 +61,7 @@ static double measure_of(const weft_component_errors *errors, bool for_screen)
     return for_screen ? errors->screen : errors->linear;
 }
 
-static int best_exponent(const weft_component_trial *tried, bool for_screen)
+int weft_component_best_exponent(const weft_component_trial *tried, bool for_screen)
 {
     int best = for_screen ? USUAL : LINEAR;
     double least = INFINITY, linear = INFINITY;
@@ -121,7 +121,7 @@ static weft_code try_exponents(const search *s, weft_error *error)
         WEFT_TRY(try_exponent(s, i, error));
         is_better = measure_of(&of[i], s->for_screen) < worth_an_exponent * measure_of(&of[i - 1], s->for_screen);
     }
-    bool may_be_smaller = best_exponent(s->tried, s->for_screen) <= USUAL;
+    bool may_be_smaller = weft_component_best_exponent(s->tried, s->for_screen) <= USUAL;
     for (int i = LINEAR + 1; i < USUAL && may_be_smaller; i++)
         WEFT_TRY(try_exponent(s, i, error));
     return WEFT_OK;
@@ -160,7 +160,7 @@ weft_code weft_component_model_choose(const weft_component_images *images, const
         .for_screen = for_screen,
         .tried = tried};
     weft_code code = try_inside(&s, error);
-    *plan = plan_of(images, exponent_of[best_exponent(tried, for_screen)], best_form(tried, for_screen));
+    *plan = plan_of(images, exponent_of[weft_component_best_exponent(tried, for_screen)], best_form(tried, for_screen));
     weft_training_free(&some);
     return code;
 }

@@ -54,12 +54,15 @@ typedef struct weft_component_trial {
 /* The exponents: 1, 1.5, 2, 2.4 and 3. Pure. */
 float weft_component_exponent(int number);
 
+/* The number of the exponent of the least error: for the screen the least there, among those that leave of linear light
+ * at most a twentieth more than the best, else the least of linear light. A larger exponent must leave 2 % less than a
+ * smaller one. That of 2, or of 1, where nothing was tried. Pure. */
+int weft_component_best_exponent(const weft_component_trial *trial, bool for_screen);
+
 /* Which plan predicts images best that it has not seen: a tenth of the views and of the lights are held out, and forms
  * and exponents are fitted to the rest of some texels: exponents of 1 and 2, from 2 up as long as the next one is
- * better, and 1.5 unless a larger one is chosen. `training` is linear and as it is read. For the screen that is the
- * exponent of the least error there, among those that leave of linear light at most a twentieth more than the best;
- * else the one of the least error of linear light. A larger exponent must leave 2 % less than a smaller one. Lengths
- * are not chosen yet. Errors: WEFT_SYSTEM. */
+ * better, and 1.5 unless a larger one is chosen. `training` is linear and as it is read. Lengths are not chosen yet.
+ * Errors: WEFT_SYSTEM. */
 weft_code weft_component_model_choose(const weft_component_images *images, const weft_training *training,
                                       int component_count, bool for_screen, weft_component_plan *plan,
                                       weft_component_trial *trial, weft_error *error);

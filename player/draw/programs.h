@@ -25,7 +25,7 @@ typedef struct weft_variant {
     bool over_half_vector, kriged; /* their maps (player/texture/material_texture.h) */
     int lobe_count;
     bool view_table, light_table;
-    bool pruned;     /* tinted where the scene that it was pruned for does not reach */
+    bool pruned; /* tinted where the scene that it was pruned for does not reach */
 } weft_variant;
 
 enum { WEFT_PROGRAM_CAPACITY = 32, WEFT_VARIANT_TEXT = 896 };

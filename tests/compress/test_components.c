@@ -394,6 +394,7 @@ static void the_measure_chooses_the_exponent(void **state)
             assert_true(even.components.trial.of_exponent[i].linear * 0.96 <= linear);
     }
     assert_true(of[2].screen < 0.9 * of[0].screen);
+    assert_true(of[3].screen < 0.98 * of[2].screen && screen.components.plan.exponent > 2);
 }
 
 static void images_of_small_weight_do_no_harm(void **state)
@@ -428,6 +429,25 @@ static void compare_with_means(const weft_components *components, const float *f
         *square += (own - sum / count) * (own - sum / count);
         *energy += sum / count * sum / count;
     }
+}
+
+/* What a screen shows may cost a twentieth of linear light and no more, and a larger exponent is worth 2 %. */
+static void linear_light_is_not_traded_for_the_screen(void **state)
+{
+    (void)state;
+    weft_component_trial trial = {.of_exponent = {{0.2, 0.16}, {0, 0}, {0.209, 0.12}, {0.211, 0.1}, {0, 0}}};
+    assert_int_equal(weft_component_best_exponent(&trial, true), 2);
+    assert_int_equal(weft_component_best_exponent(&trial, false), 0);
+    trial.of_exponent[3].linear = 0.2099;
+    assert_int_equal(weft_component_best_exponent(&trial, true), 3);
+    trial.of_exponent[4] = (weft_component_errors){0.19, 0.0985};
+    trial.of_exponent[3].linear = 0.199;
+    trial.of_exponent[2].linear = 0.199;
+    assert_int_equal(weft_component_best_exponent(&trial, true), 3);
+    assert_int_equal(weft_component_best_exponent(&trial, false), 4);
+    trial = (weft_component_trial){0}; /* nothing was tried */
+    assert_int_equal(weft_component_best_exponent(&trial, true), 2);
+    assert_int_equal(weft_component_best_exponent(&trial, false), 0);
 }
 
 /* Levels are means of linear light, also of coded components, whose coefficients are no means. */
@@ -647,6 +667,7 @@ int test_components(void)
         cmocka_unit_test(what_is_held_out_is_not_seen),
         cmocka_unit_test(images_of_small_weight_do_no_harm),
         cmocka_unit_test(the_measure_chooses_the_exponent),
+        cmocka_unit_test(linear_light_is_not_traded_for_the_screen),
         cmocka_unit_test(levels_are_means),
         cmocka_unit_test(ceilings_are_four_times_the_brightest_sample),
         cmocka_unit_test(ceilings_hold_everywhere),
