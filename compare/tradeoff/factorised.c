@@ -101,7 +101,7 @@ static weft_code find_matrix(matrices *m, int matrix, weft_error *error)
     weft_training training;
     WEFT_TRY(weft_training_allocate((texels + step - 1) / step, m->length, (size_t)m->image_count, &training, error));
     for (int t = 0; t < training.texel_count; t++)
-        gather(m, matrix, (size_t)(t * step), training.vector + (size_t)t * m->length,
+        gather(m, matrix, (size_t)t * (size_t)step, training.vector + (size_t)t * m->length,
                training.known + (size_t)t * (size_t)m->image_count);
     weft_factorisation *factorisation = &m->factorisation[matrix];
     weft_code code = weft_factorisation_find(&training, table[m->kind].terms[matrix], factorisation, error);
@@ -164,7 +164,7 @@ static weft_code restore_texels(const matrices *m, weft_half *samples, weft_erro
 {
     size_t texels = (size_t)m->subset->layout.width * (size_t)m->subset->layout.height;
     float *vector = aligned_alloc(64, 2 * m->length * sizeof *vector);
-    uint8_t *known = malloc((size_t)m->image_count);
+    uint8_t *known = calloc((size_t)m->image_count, 1);
     weft_code code = vector && known ? WEFT_OK : weft_fail_memory(error, "samples", m->length * sizeof *vector);
     for (size_t t = 0; t < texels && code == WEFT_OK; t++) {
         memset(vector + m->length, 0, m->length * sizeof *vector);

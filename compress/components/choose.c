@@ -140,6 +140,7 @@ static weft_code try_inside(search *s, weft_error *error)
             code = try_exponents(s, error);
     }
     weft_image_split_free(&split);
+    s->of.split = NULL;
     return code;
 }
 

@@ -159,7 +159,7 @@ weft_code weft_photographs_check_flash(const char *folder, const weft_photograph
 static double *pattern_of(const weft_image *image)
 {
     long count = (long)image->width * image->height;
-    double sum = 0, squares = 0, *pattern = image->pixels ? malloc((size_t)count * sizeof *pattern) : NULL;
+    double sum = 0, squares = 0, *pattern = image->pixels ? calloc((size_t)count, sizeof *pattern) : NULL;
     for (long i = 0; pattern && i < count; i++) {
         pattern[i] = (double)image->pixels[3 * i + 1];
         sum += pattern[i];
