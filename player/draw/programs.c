@@ -42,12 +42,12 @@ static void define(const char *name, const weft_variant *v, char text[WEFT_VARIA
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define NOISE %s\n"
         "#define COMPONENT_GROUPS %d\n#define DRAWN_GROUPS %d\n#define OVER_HALF_VECTOR %s\n#define KRIGED %s\n#define "
         "RELIEF %s\n"
-        "#define PRUNED %d\n",
+        "#define PRUNED %d\n#define STAPLES %s\n#define FILAMENTS %s\n",
         name, name_of(v->casts), WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_KEY_PLACES, WEFT_LEVEL_COLOURS,
         light_count_of(v), name_of(v->one_light), v->chosen_lights, name_of(v->stochastic), name_of(v->shadows),
         v->plot, name_of(v->opacity), v->lobe_count, name_of(v->view_table), name_of(v->light_table), name_of(v->noise),
         v->component_groups, v->drawn_groups, name_of(v->over_half_vector), name_of(v->kriged), name_of(v->relief),
-        v->pruned);
+        v->pruned, name_of(v->staples), name_of(v->filaments));
 }
 
 /* ---- Programs ---- */

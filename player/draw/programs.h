@@ -12,13 +12,14 @@ enum { WEFT_MAX_LIGHTS = 52 }; /* of one frame: those of the scene and 48 of the
 typedef struct weft_variant {
     weft_mode mode;
     bool stochastic, shadows, one_light;
-    int chosen_lights; /* of the environment, by chance; 0: all of it */
-    bool casts;        /* draws the shadow of cloth with holes */
-    int plot;          /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
-    bool opacity;      /* raw and components: some is below 1 */
-    bool relief;       /* raw and components: through the heights */
-    bool threads;      /* analytic: microcylinders, else a weave */
-    bool noise;        /* analytic: that of the weave */
+    int chosen_lights;       /* of the environment, by chance; 0: all of it */
+    bool casts;              /* draws the shadow of cloth with holes */
+    int plot;                /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
+    bool opacity;            /* raw and components: some is below 1 */
+    bool relief;             /* raw and components: through the heights */
+    bool threads;            /* analytic: microcylinders, else a weave */
+    bool noise;              /* analytic: that of the weave */
+    bool staples, filaments; /* analytic: kinds of yarn that shine from afar */
     /* Of the compressed material: */
     int component_groups;          /* four components each, in the place of lobes; 0: lobes */
     int drawn_groups;              /* the first of them, which are evaluated */

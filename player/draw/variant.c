@@ -59,6 +59,8 @@ weft_variant weft_player_variant(const weft_player *p, const weft_scene *scene, 
         variant.chosen_lights = INTERACTIVE_LIGHTS;
     variant.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
     variant.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
+    variant.staples = pane->mode == WEFT_MODE_ANALYTIC && !variant.threads && p->weave.has_staples;
+    variant.filaments = pane->mode == WEFT_MODE_ANALYTIC && !variant.threads && p->weave.has_filaments;
     if (pane->mode == WEFT_MODE_RAW) {
         variant.opacity = !p->raw.opaque;
         variant.relief = scene->relief && p->raw.relief.height;

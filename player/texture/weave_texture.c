@@ -29,8 +29,11 @@ weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_
     double tiles_u = layout->tiles_u, tiles_v = layout->tiles_v;
     if (!(tiles_u > 0) || !(tiles_v > 0) || !isfinite(tiles_u) || !isfinite(tiles_v))
         return weft_fail(error, WEFT_BAD_USAGE, "a material of %g x %g tiles cannot be shown", tiles_u, tiles_v);
-    weft_weave_texture added = {
-        .texels = texels->width * texels->height, .has_noise = texels->has_noise, .layout = *layout};
+    weft_weave_texture added = {.texels = texels->width * texels->height,
+                                .has_noise = texels->has_noise,
+                                .has_staples = texels->means.has_staples,
+                                .has_filaments = texels->means.has_filaments,
+                                .layout = *layout};
     added.texels += WEFT_WEAVE_MEAN_WIDTH * (texels->means.kinds + texels->noisy_means.kinds);
     weft_code code = upload_cloth(texels, &added, error);
     delete_cloth(code == WEFT_OK ? t : &added);

@@ -14,7 +14,7 @@
  * own cells. Begins zeroed. */
 typedef struct weft_weave_texture {
     GLuint table, means, noisy_means; /* noisy_means: 0 where it is the same */
-    bool has_noise;
+    bool has_noise, has_staples, has_filaments;
     int texels;
     weft_weave_layout layout;
 } weft_weave_texture;

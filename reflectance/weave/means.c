@@ -73,13 +73,13 @@ static void put_kind(const weft_weave *weave, int kind, bool noisy, float (*row)
     put_colour(weave, kind, row[0]);
     row[0][3] = yarn->warp;
     put_colour(weave, -1, row[1]);
-    row[1][3] = yarn->admissible ? (float)largest : 0;
     if (!yarn->admissible)
         return;
-    const weft_real value[2][4] = {
+    const weft_real value[3][4] = {
         {prepared->segment.alpha, prepared->segment.beta, prepared->phase_scale, prepared->segment.width / 2},
-        {prepared->cot_psi, prepared->inverse_sin_psi, spine->shape * fabs(spine->shape), spine->scale}};
-    for (int i = 0; i < 8; i++)
+        {prepared->cot_psi, prepared->inverse_sin_psi, spine->shape * fabs(spine->shape), spine->scale},
+        {sin(largest), cos(largest), largest}};
+    for (int i = 0; i < 12; i++)
         row[2 + i / 4][i % 4] = (float)value[i / 4][i % 4];
     fill_spine(prepared, umax, count, largest, row + HEADER);
 }
@@ -93,8 +93,12 @@ weft_code weft_weave_means_of(const weft_weave *weave, bool noisy, weft_weave_me
     if (!means->texel)
         return weft_fail_memory(error, "mean of a weave", (size_t)means->kinds * WIDTH * sizeof *means->texel);
     for (int k = 0, row = 0; k < weave->yarn_count; k++)
-        if (weave->yarn[k].alike == k)
+        if (weave->yarn[k].alike == k) {
+            bool shines = weave->yarn[k].admissible, filament = weave->yarn[k].prepared.filament;
+            means->has_staples = means->has_staples || (shines && !filament);
+            means->has_filaments = means->has_filaments || (shines && filament);
             put_kind(weave, k, noisy, means->texel + WIDTH * (size_t)row++);
+        }
     return WEFT_OK;
 }
 
@@ -110,7 +114,8 @@ void weft_weave_means_free(weft_weave_means *means)
 typedef struct yarn_kind {
     const float (*row)[4];
     bool noisy;
-    weft_real umax, alpha, beta, phase_scale, radius, cot_psi, inverse_sin_psi, shape_squared, scale;
+    weft_real umax, alpha, beta, phase_scale, radius, cot_psi, inverse_sin_psi, shape_squared, scale, sin_umax,
+        cos_umax;
 } yarn_kind;
 
 static yarn_kind kind_of(const weft_weave_means *means, int index)
@@ -118,7 +123,7 @@ static yarn_kind kind_of(const weft_weave_means *means, int index)
     const float(*row)[4] = (const float(*)[4])(means->texel + WIDTH * (size_t)index);
     return (yarn_kind){row,
                        means->noisy,
-                       (weft_real)row[1][3],
+                       (weft_real)row[4][2],
                        (weft_real)row[2][0],
                        (weft_real)row[2][1],
                        (weft_real)row[2][2],
@@ -126,7 +131,9 @@ static yarn_kind kind_of(const weft_weave_means *means, int index)
                        (weft_real)row[3][0],
                        (weft_real)row[3][1],
                        (weft_real)row[3][2],
-                       (weft_real)row[3][3]};
+                       (weft_real)row[3][3],
+                       (weft_real)row[4][0],
+                       (weft_real)row[4][1]};
 }
 
 typedef struct mean_spine {
@@ -151,16 +158,22 @@ static mean_spine staple_spine(const yarn_kind *kind, weft_real sine, weft_real 
     return (mean_spine){kind->scale / (e * sqrt(e)), 1};
 }
 
+/* Of umax + u, and 1 from a right angle on; |u| is below one. */
+static weft_real sine_up_to_1(const yarn_kind *kind, weft_real sin_u, weft_real cos_u)
+{
+    bool acute = kind->cos_umax * cos_u > kind->sin_umax * sin_u;
+    return acute ? kind->sin_umax * cos_u + kind->cos_umax * sin_u : 1;
+}
+
 /* Along the yarn, by the sine of x = u - u0, where H lies across at u0. The midpoint rule in theta, sin x = middle -
  * half cos(theta), from one end of the highlight to the other: the integrand begins like a square root there. */
 static weft_real staple_mean(const yarn_kind *kind, weft_vec3 half, weft_vec3 light, weft_vec3 view)
 {
-    const weft_real quarter = (weft_real)(WEFT_PI / 2);
-    weft_real across = sqrt(half.y * half.y + half.z * half.z), u0 = atan2(half.y, half.z), sum = 0;
+    weft_real across = sqrt(half.y * half.y + half.z * half.z), sum = 0;
     weft_real reach = fmin(weft_length(half) / (kind->inverse_sin_psi * across), 1);
-    weft_real low = fmax(-reach, sin(weft_clamp(-kind->umax - u0, -quarter, quarter)));
-    weft_real high = fmin(reach, sin(weft_clamp(kind->umax - u0, -quarter, quarter)));
     weft_real sin_u0 = half.y / across, cos_u0 = half.z / across;
+    weft_real low = fmax(-reach, -sine_up_to_1(kind, sin_u0, cos_u0));
+    weft_real high = fmin(reach, sine_up_to_1(kind, -sin_u0, cos_u0));
     for (int i = 0; low < high && i < NODES; i++) {
         weft_real theta = ((weft_real)i + (weft_real)0.5) * (weft_real)(WEFT_PI / NODES);
         weft_real sin_x = (low + high) / 2 - (high - low) / 2 * cos(theta);

@@ -24,17 +24,19 @@ void weft_weave_table(const weft_weave *weave, float *rgba, int *width, int *hei
 
 /* The mean over the tile, sum_k F_k (kd/pi + ks s aw f_s), with one row of texels for each kind of yarn:
  *     0     sum of F ks s aw over the yarns of the kind, r, g, b; 1 = warp or 0 = weft
- *     1     sum of F kd / pi over all yarns, r, g, b; the largest umax of the kind (rad; 0: it has no highlight)
+ *     1     sum of F kd / pi over all yarns, r, g, b; 0
  *     2     alpha, beta, phase scale, width / 2 (cells)
  *     3     cot psi, 1 / |sin psi| (0 = filament), shape |shape| and scale of the spine
- *     4 + i radius R of the spine at |u| = i / STEPS of that umax, and 1 where there is such a yarn, both times the
+ *     4     sine and cosine of the largest umax of the kind, and it (rad; 0: it has no highlight); 0
+ *     5 + i radius R of the spine at |u| = i / STEPS of that umax, and 1 where there is such a yarn, both times the
  * fade of a filament and as the mean over the inclinations of its segments; the same at i + 1 */
-enum { WEFT_WEAVE_MEAN_STEPS = 256, WEFT_WEAVE_MEAN_WIDTH = 4 + WEFT_WEAVE_MEAN_STEPS };
+enum { WEFT_WEAVE_MEAN_STEPS = 256, WEFT_WEAVE_MEAN_WIDTH = 5 + WEFT_WEAVE_MEAN_STEPS };
 
 typedef struct weft_weave_means {
     int kinds;
-    bool noisy;        /* staples take their radius from the steps, too */
-    float (*texel)[4]; /* [kinds][WEFT_WEAVE_MEAN_WIDTH] */
+    bool noisy;                      /* staples take their radius from the steps, too */
+    bool has_staples, has_filaments; /* with a highlight */
+    float (*texel)[4];               /* [kinds][WEFT_WEAVE_MEAN_WIDTH] */
 } weft_weave_means;
 
 /* `noisy`: with the noise of inclination. Errors: WEFT_SYSTEM for memory. The caller frees with weft_weave_means_free,

@@ -1,8 +1,9 @@
 // The mean of a weave over its tile, by its kinds of yarn: twin of reflectance/weave/means.c.
-// Needs woven.glsl before it, a texture filled by weft_weave_means_of, and NOISE defined: whether it is noisy.
+// Needs woven.glsl before it, a texture filled by weft_weave_means_of, and defined NOISE: whether it is noisy,
+// STAPLES and FILAMENTS: whether it has such yarns. Software rasterisers execute both sides of a branch.
 // Common subset of GLSL 3.30 core and GLSL ES 3.00; needs highp float.
 
-const int WEAVE_MEAN_HEADER = 4;
+const int WEAVE_MEAN_HEADER = 5;
 const int WEAVE_MEAN_STEPS = 256;
 const int WEAVE_MEAN_NODES = 12;
 const float WEAVE_MEAN_MIN_COSINE = 1e-7;
@@ -13,6 +14,7 @@ struct WeaveKind {
     bool warp;
     vec3 colour;
     float umax, alpha, beta, phase_scale, radius, cot_psi, inverse_sin_psi, shape_squared, scale;
+    vec2 at_umax; // sine and cosine
 };
 
 vec3 weave_mean_diffuse(sampler2D means)
@@ -23,11 +25,11 @@ vec3 weave_mean_diffuse(sampler2D means)
 WeaveKind weave_kind(sampler2D means, int row)
 {
     vec4 head = texelFetch(means, ivec2(0, row), 0);
-    float umax = texelFetch(means, ivec2(1, row), 0).w;
     vec4 phase = texelFetch(means, ivec2(2, row), 0);
     vec4 shape = texelFetch(means, ivec2(3, row), 0);
-    return WeaveKind(row, head.w > 0.0, head.rgb, umax, phase.x, phase.y, phase.z, phase.w, shape.x, shape.y, shape.z,
-                     shape.w);
+    vec4 umax = texelFetch(means, ivec2(4, row), 0);
+    return WeaveKind(row, head.w > 0.0, head.rgb, umax.z, phase.x, phase.y, phase.z, phase.w, shape.x, shape.y, shape.z,
+                     shape.w, umax.xy);
 }
 
 // Radius at u and share of the yarns that are there, both times their fade.
@@ -47,17 +49,21 @@ vec2 weave_staple_spine(sampler2D means, WeaveKind kind, float sine, float cosin
     return vec2(kind.scale * root * root * root, 1.0);
 }
 
+// Of a sum of angles, and 1 from a right angle on; both as sine and cosine, |b| is below one.
+float weave_sine_up_to_1(vec2 a, vec2 b)
+{
+    return a.y * b.y > a.x * b.x ? a.x * b.y + a.y * b.x : 1.0;
+}
+
 // Without branches, which cost a rasteriser on the processor more than their arithmetic, and with one division a place:
 // c1 + c2 = |H| n.h is the root that the mirroring point needs.
 float weave_staple_mean(sampler2D means, WeaveKind kind, vec3 halfway, vec3 light)
 {
-    float quarter = 0.5 * WOVEN_PI;
     float across = sqrt(halfway.y * halfway.y + halfway.z * halfway.z);
-    float u0 = atan(halfway.y, halfway.z);
     float reach = min(length(halfway) / (kind.inverse_sin_psi * across), 1.0);
-    float low = max(-reach, sin(clamp(-kind.umax - u0, -quarter, quarter)));
-    float high = min(reach, sin(clamp(kind.umax - u0, -quarter, quarter)));
     vec2 at_u0 = halfway.yz / across;
+    float low = max(-reach, -weave_sine_up_to_1(kind.at_umax, at_u0));
+    float high = min(reach, weave_sine_up_to_1(kind.at_umax, vec2(-at_u0.x, at_u0.y)));
     vec3 l = vec3(light.x, dot(light.yz, at_u0), light.y * at_u0.y - light.z * at_u0.x);
     float middle = 0.5 * (low + high);
     float extent = 0.5 * (high - low);
@@ -162,8 +168,9 @@ vec3 weave_mean_of_kind(sampler2D means, WeaveKind kind, vec3 light, vec3 view)
     bool shines = kind.umax > 0.0 && light.z > 0.0 && view.z > 0.0 && dot(halfway, halfway) >= WOVEN_MIN_HALF_SQUARED;
     if (!shines)
         return vec3(0.0);
-    float value = kind.inverse_sin_psi == 0.0 ? weave_filament_mean(means, kind, halfway, l, v)
-                                              : weave_staple_mean(means, kind, halfway, l);
+    bool is_filament = FILAMENTS && (!STAPLES || kind.inverse_sin_psi == 0.0);
+    float value =
+        is_filament ? weave_filament_mean(means, kind, halfway, l, v) : weave_staple_mean(means, kind, halfway, l);
     float x = clamp(-dot(light, view), -1.0, 1.0);
     float phase = kind.alpha + exp(kind.beta * x - abs(kind.beta)) * kind.phase_scale;
     return kind.colour * (value * phase);

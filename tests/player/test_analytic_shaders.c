@@ -72,7 +72,18 @@ static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
     return stage_lit((weft_rgb){WEFT_PI * sum.r, WEFT_PI * sum.g, WEFT_PI * sum.b}, light, 1);
 }
 
-static void compare_weave(void **state, const char *name, double repeat, int noise_seed)
+/* Filaments of the warp become staples. */
+static void twist_warp(weft_weave *weave)
+{
+    for (int i = 0; i < weave->yarn_count; i++) {
+        if (!weave->yarn[i].warp)
+            continue;
+        weave->yarn[i].segment.psi = 0.5;
+        weave->yarn[i].prepared = weft_segment_prepare(&weave->yarn[i].segment);
+    }
+}
+
+static void compare_cloth(void **state, const char *name, bool twisted, double repeat, int noise_seed)
 {
     stage *s = *state;
     weft_error error = {0};
@@ -80,6 +91,8 @@ static void compare_weave(void **state, const char *name, double repeat, int noi
     cloth_model *model = calloc(1, sizeof *model);
     snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
     expect_ok(weft_weave_read(path, NULL, 0, &model->weave, warning, &error), &error);
+    if (twisted)
+        twist_warp(&model->weave);
     expect_ok(weft_weave_texels_of(&model->weave, &model->texels, &error), &error);
     model->noise_seed = noise_seed;
     model->layout = (weft_weave_layout){2.25, 2, 0.3, -0.4};
@@ -93,6 +106,11 @@ static void compare_weave(void **state, const char *name, double repeat, int noi
     free(model);
 }
 
+static void compare_weave(void **state, const char *name, double repeat, int noise_seed)
+{
+    compare_cloth(state, name, false, repeat, noise_seed);
+}
+
 static void analytic_equals_c_for_staple_and_filament_yarns(void **state)
 {
     compare_weave(state, "cotton_denim", 2, 0);
@@ -103,6 +121,12 @@ static void analytic_equals_c_where_the_texture_fades_to_the_mean(void **state)
 {
     compare_weave(state, "wool_gabardine", 7.5, 0);
     compare_weave(state, "polyester_lining", 30, 0);
+}
+
+static void analytic_equals_c_for_a_cloth_of_both_yarns(void **state)
+{
+    compare_cloth(state, "silk_charmeuse", true, 20, 0);
+    compare_cloth(state, "silk_shantung", true, 20, 7);
 }
 
 static void noise_of_both_kinds_equals_c_near_and_far(void **state)
@@ -192,6 +216,7 @@ int test_analytic_shaders(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
         cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
+        cmocka_unit_test(analytic_equals_c_for_a_cloth_of_both_yarns),
         cmocka_unit_test(noise_of_both_kinds_equals_c_near_and_far),
         cmocka_unit_test(many_samples_show_what_a_larger_picture_shows),
         cmocka_unit_test(microcylinders_equal_c),

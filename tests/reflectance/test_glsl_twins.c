@@ -110,6 +110,7 @@ static const char mean_source[] =
 static void compare_means(const char *name, bool noisy, weft_gl_profile profile, twin_queries queries)
 {
     const char *const sources[] = {noisy ? "#define NOISE true\n" : "#define NOISE false\n",
+                                   "#define STAPLES true\n#define FILAMENTS true\n",
                                    weft_glsl_woven,
                                    weft_glsl_weave,
                                    weft_glsl_weave_mean,

@@ -1,6 +1,6 @@
 // Analytic cloth: the woven texture where a sample resolves the yarns, the mean of the tile where it does not. A sample
 // is a pixel, or the part of it that one of the frames of its mean stands for.
-// Constant defined by player/draw/programs.c: NOISE.
+// Constant defined by player/draw/programs.c: NOISE, STAPLES, FILAMENTS.
 // C twins: weft_weave_brdf and weft_weave_tabulated_mean.
 uniform sampler2D weave_table;
 uniform sampler2D weave_means;
@@ -86,18 +86,17 @@ vec3 yarn_radiance(SurfacePoint point)
 vec3 mean_radiance(SurfacePoint point)
 {
     int kinds = textureSize(weave_means, 0).y;
-    vec3 sum = vec3(0.0);
-    for (int k = 0; k < kinds; k++) {
-        WeaveKind kind = weave_kind(weave_means, k);
-        for (int i = 0; i < LIGHT_COUNT; i++) {
-            vec3 irradiance = surface_irradiance(point, i);
-            if (irradiance != vec3(0.0))
-                sum += irradiance * weave_mean_of_kind(weave_means, kind, surface_light(point, i), point.view);
-        }
-    }
     vec3 diffuse = weave_mean_diffuse(weave_means);
-    for (int i = 0; i < LIGHT_COUNT; i++)
-        sum += surface_light(point, i).z > 0.0 ? surface_irradiance(point, i) * diffuse : vec3(0.0);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i);
+        vec3 light = surface_light(point, i);
+        vec3 value = light.z > 0.0 ? diffuse : vec3(0.0);
+        int count = irradiance != vec3(0.0) ? kinds : 0;
+        for (int k = 0; k < count; k++)
+            value += weave_mean_of_kind(weave_means, weave_kind(weave_means, k), light, point.view);
+        sum += irradiance * value;
+    }
     return sum;
 }
 
