@@ -19,7 +19,7 @@ step "1/5 Photograph the cloth: 81 views x 81 lights = 6561 photographs by the v
 step "2/5 Register the photographs: one projective warp a view, calibrated reflectance"
 "$weft" register "$out/gabardine" --size 64x64 -o "$out/gabardine.btf.h5" --report "$out/registration"
 
-step "3/5 Compress: 32 linear layers, all mip levels"
+step "3/5 Compress: 32 components, all mip levels"
 "$weft" compress "$out/gabardine.btf.h5" -o "$out/gabardine.weft"
 
 step "4/5 Draw: raw BTF, compressed material and analytic cloth side by side"
