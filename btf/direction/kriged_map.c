@@ -27,6 +27,7 @@ static weft_vec3 node_at(int side, bool of_half_vectors, int node)
 static void fill_covariances(const weft_vec3 *direction, float length, float trend, weft_kriged_grid *grid)
 {
     size_t count = (size_t)grid->node_count;
+#pragma omp parallel for schedule(dynamic, 16)
     for (size_t i = 0; i < count; i++)
         for (size_t j = i; j < count; j++) {
             double x = sqrt(3) * (double)weft_length(weft_subtract(direction[i], direction[j])) / (double)length;
