@@ -89,9 +89,9 @@ static bool slide(const sheet *s, weft_ruler *ruler)
     double reach = (ruler->upright ? weft_paper_printable_height(&s->settings->paper)
                                    : weft_paper_printable_width(&s->settings->paper)) /
                    2;
-    for (double away = 0; away <= reach; away += step_mm) {
+    for (int step = 0; step * step_mm <= reach; step++) {
         for (int side = 1; side >= -1; side -= 2) {
-            *along = side * away;
+            *along = side * step * step_mm;
             if (is_clear(s, ruler))
                 return true;
         }

@@ -112,7 +112,7 @@ weft_expected_pose weft_axes_expect_pose(const weft_axes_fit *fit, const weft_ri
 {
     double per_mm = texels / opening_mm;
     const double own[2] = {fit->scatter.rotation_rad, fit->scatter.translation_mm};
-    shown slopes[WEFT_UNKNOWNS + WEFT_OWN_UNKNOWNS];
+    shown slopes[WEFT_UNKNOWNS + WEFT_OWN_UNKNOWNS] = {0};
     variance model = {0, 0}, scatter = {0, 0};
     for (int k = 0; k < fit->unknowns + WEFT_OWN_UNKNOWNS; k++)
         slopes[k] = slope_of(fit, nominal, opening_mm, turns, k);
