@@ -75,6 +75,7 @@ static bool put_attributes(hid_t file, const weft_dataset_layout *layout)
            put_text(file, "values", weft_values_name[layout->values]) &&
            put_text(file, "distance", weft_distance_name[layout->distance]) &&
            put_text(file, "colour_space", WEFT_DATASET_COLOUR_SPACE) &&
+           put_text(file, "saturated_samples", WEFT_DATASET_LOWER_BOUNDS) &&
            put_attribute(file, "texel_pitch_mm", H5T_NATIVE_DOUBLE, &layout->texel_pitch_mm) &&
            put_known_number(file, "texel_aspect", layout->texel_aspect) &&
            put_known_number(file, "plane_mm", layout->plane_mm);

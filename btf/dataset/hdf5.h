@@ -6,11 +6,13 @@
 #include "btf/dataset/dataset.h"
 
 #include <hdf5.h>
+#include <stdbool.h>
 
 enum { WEFT_DATASET_VERSION = 1 };
 
 #define WEFT_DATASET_FORMAT "weft btf"
 #define WEFT_DATASET_COLOUR_SPACE "linear Rec. 709"
+#define WEFT_DATASET_LOWER_BOUNDS "lower bounds"
 
 extern const char *const weft_values_name[2];   /* by weft_values */
 extern const char *const weft_distance_name[2]; /* by weft_distance */
@@ -25,6 +27,7 @@ struct weft_dataset {
     hid_t transfer;                 /* of weft_hdf5_whole_transfer */
     hid_t opacity, frames, heights; /* invalid where the file has none */
     int heights_width, heights_height, heights_levels;
+    bool has_bounds; /* what is only saturated is a lower bound; else it means nothing */
 };
 
 /* Keeps HDF5 from printing its error stack. */

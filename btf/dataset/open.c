@@ -131,6 +131,17 @@ static weft_code check_colour_space(const weft_dataset *dataset, weft_error *err
     return WEFT_OK;
 }
 
+/* Files of others, and of Weft before 0.2, do not say what saturated samples are. */
+static weft_code find_bounds(weft_dataset *dataset, weft_error *error)
+{
+    char text[MAX_NAME];
+    if (H5Aexists(dataset->file, "saturated_samples") <= 0)
+        return WEFT_OK;
+    WEFT_TRY(read_text_attribute(dataset, "saturated_samples", text, error));
+    dataset->has_bounds = strcmp(text, WEFT_DATASET_LOWER_BOUNDS) == 0;
+    return WEFT_OK;
+}
+
 /* Index of the attribute's text among two names. */
 static weft_code read_choice(const weft_dataset *dataset, const char *name, const char *const choice[2], int *index,
                              weft_error *error)
@@ -161,6 +172,7 @@ static weft_code read_attributes(weft_dataset *dataset, weft_error *error)
     dataset->layout.values = (weft_values)values;
     dataset->layout.distance = (weft_distance)distance;
     WEFT_TRY(check_colour_space(dataset, error));
+    WEFT_TRY(find_bounds(dataset, error));
     WEFT_TRY(read_number_attribute(dataset, "texel_pitch_mm", &dataset->layout.texel_pitch_mm, error));
     WEFT_TRY(read_optional_number(dataset, "texel_aspect", &dataset->layout.texel_aspect, error));
     return read_optional_number(dataset, "plane_mm", &dataset->layout.plane_mm, error);

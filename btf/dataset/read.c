@@ -70,6 +70,16 @@ static weft_code clear_masked(const weft_dataset *dataset, texel_block block, we
     return WEFT_OK;
 }
 
+/* Samples that are saturated and nothing else become 0: nobody says that they are lower bounds. */
+static void clear_saturated(const weft_dataset *dataset, texel_block block, weft_half *samples, const uint8_t *mask)
+{
+    size_t count = (size_t)block.width * (size_t)block.height * (size_t)dataset->layout.image_count;
+    for (size_t i = 0; i < count; i++) {
+        if (mask[i] == WEFT_MASK_SATURATED)
+            memset(samples + 3 * i, 0, 3 * sizeof *samples);
+    }
+}
+
 static weft_code read_mask(const weft_dataset *dataset, texel_block block, uint8_t *mask, weft_error *error)
 {
     hsize_t images = (hsize_t)dataset->layout.image_count;
@@ -105,7 +115,11 @@ weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width
     weft_hdf5_quiet();
     if (mask)
         WEFT_TRY(read_mask(dataset, block, mask, error));
-    return samples ? read_samples(dataset, block, samples, mask, error) : WEFT_OK;
+    if (samples)
+        WEFT_TRY(read_samples(dataset, block, samples, mask, error));
+    if (samples && mask && !dataset->has_bounds)
+        clear_saturated(dataset, block, samples, mask);
+    return WEFT_OK;
 }
 
 weft_code weft_dataset_read_opacity(weft_dataset *dataset, int y, int height, float *opacity, weft_error *error)

@@ -5,6 +5,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_dataset.h"
 
+#include <hdf5.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -147,6 +148,30 @@ static void samples_and_mask_can_be_read_alone(void **state)
     weft_dataset_close(dataset);
     weft_dataset_layout_free(&layout);
     remove("alone.btf.h5");
+}
+
+/* As others write them, and as Weft did before 0.2: nobody says that what is saturated is a lower bound. */
+static void saturated_samples_mean_nothing_unless_the_file_says_so(void **state)
+{
+    (void)state;
+    weft_dataset_layout layout = tiny_layout(2, 2, 2, 20);
+    weft_half samples[40 * 3];
+    uint8_t mask[40];
+    int saturated = 0;
+    write_dataset("bounds.btf.h5", &layout, tiny_distinct);
+    hid_t file = H5Fopen("bounds.btf.h5", H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(H5Adelete(file, "saturated_samples") >= 0);
+    H5Fclose(file);
+    weft_dataset *dataset = open_dataset("bounds.btf.h5");
+    assert_int_equal(weft_dataset_read_block(dataset, 1, 1, 1, 1, samples, mask, NULL), WEFT_OK);
+    for (int image = 0; image < 40; image++) {
+        saturated += mask[image] == WEFT_MASK_SATURATED;
+        assert_true((mask[image] == 0) == (samples[3 * image] != 0));
+    }
+    assert_true(saturated > 0);
+    weft_dataset_close(dataset);
+    weft_dataset_layout_free(&layout);
+    remove("bounds.btf.h5");
 }
 
 static void images_come_in_any_order_and_absent_ones_are_missing(void **state)
@@ -393,6 +418,7 @@ int test_dataset(void)
         cmocka_unit_test(a_dataset_of_any_shape_reads_back_as_written),
         cmocka_unit_test(a_row_larger_than_the_writers_memory_reads_back),
         cmocka_unit_test(samples_and_mask_can_be_read_alone),
+        cmocka_unit_test(saturated_samples_mean_nothing_unless_the_file_says_so),
         cmocka_unit_test(images_come_in_any_order_and_absent_ones_are_missing),
         cmocka_unit_test(figures_of_images_are_kept_and_unknown_where_absent),
         cmocka_unit_test(opacity_is_kept_and_is_one_where_absent),
